@@ -1,0 +1,100 @@
+"""The albedo space: every skin of a tissue, as reflectance and as linear sRGB."""
+
+from collections.abc import Iterator
+from functools import cached_property, lru_cache
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from cutis.albedo.spectral_table import CELLS, SpectralTable, spectral_table
+from cutis.colour import spectrum_to_rgb
+from cutis.optics import ALIAGA2022, WAVELENGTHS, Tissue, chromophores
+
+BAND = 1 << 18
+"""Texels converted at a time."""
+
+
+class AlbedoSpace:
+    """Forward model of a tissue: parameters → albedo, exact to 1e-4 (docs/albedo.md).
+
+    Parameters are (..., 5) in the units and order of `optics.PARAMETERS`.
+    """
+
+    def __init__(self, table: SpectralTable) -> None:
+        """Of an existing table; `albedo_space` makes and keeps the common ones."""
+        tissue = table.tissue
+        deoxygenated, oxygenated = tissue.whole_blood(WAVELENGTHS)
+        spectra = [
+            chromophores.eumelanin(WAVELENGTHS),
+            chromophores.pheomelanin(WAVELENGTHS),
+            tissue.epidermis_background(WAVELENGTHS),
+            deoxygenated,
+            oxygenated,
+            chromophores.baseline(WAVELENGTHS),
+        ]
+        self.tissue = tissue
+        self.table = table
+        self._model = (
+            np.array(spectra, dtype=np.float32),
+            table.coefficients,
+            table.low.astype(np.float32),
+            (np.array(CELLS) / (table.high - table.low)).astype(np.float32),
+        )
+
+    @cached_property
+    def _to_rgb(self) -> NDArray[np.float32]:
+        return spectrum_to_rgb(WAVELENGTHS).astype(np.float32)
+
+    def reflectance(self, parameters: ArrayLike) -> NDArray[np.float32]:
+        """(..., 5) parameters → (..., 41) reflectance in [0, 1] at `optics.WAVELENGTHS`."""
+        from cutis.albedo.spline import reflectance_kernel
+
+        flat, shape = _rows(parameters)
+        out = np.empty((len(flat), len(WAVELENGTHS)), dtype=np.float32)
+        for band in _bands(len(flat)):
+            reflectance_kernel(_float32(flat[band]), *self._model, out[band])
+        return out.reshape(*shape, -1)
+
+    def rgb(self, parameters: ArrayLike) -> NDArray[np.float32]:
+        """(..., 5) parameters → (..., 3) linear sRGB under D65."""
+        from cutis.albedo.spline import rgb_kernel
+
+        flat, shape = _rows(parameters)
+        out = np.empty((len(flat), 3), dtype=np.float32)
+        for band in _bands(len(flat)):
+            rgb_kernel(_float32(flat[band]), *self._model, self._to_rgb, out[band])
+        return out.reshape(*shape, 3)
+
+    def rgb_gradient(
+        self, parameters: ArrayLike
+    ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+        """(..., 5) parameters → (..., 3) linear sRGB and (..., 3, 5) its slope per parameter."""
+        from cutis.albedo.spline import rgb_gradient_kernel
+
+        flat, shape = _rows(parameters)
+        out = np.empty((len(flat), 3), dtype=np.float32)
+        slope = np.empty((len(flat), 3, 5), dtype=np.float32)
+        for band in _bands(len(flat)):
+            rgb_gradient_kernel(
+                _float32(flat[band]), *self._model, self._to_rgb, out[band], slope[band]
+            )
+        return out.reshape(*shape, 3), slope.reshape(*shape, 3, 5)
+
+
+def _rows(parameters: ArrayLike) -> tuple[NDArray[np.floating], tuple[int, ...]]:
+    values = np.asarray(parameters)
+    return values.reshape(-1, 5), values.shape[:-1]
+
+
+def _float32(values: NDArray[np.floating]) -> NDArray[np.float32]:
+    return np.ascontiguousarray(values, dtype=np.float32)
+
+
+def _bands(count: int) -> Iterator[slice]:
+    return (slice(start, start + BAND) for start in range(0, count, BAND))
+
+
+@lru_cache(maxsize=4)
+def albedo_space(tissue: Tissue = ALIAGA2022) -> AlbedoSpace:
+    """The albedo space of `tissue`, made once per process."""
+    return AlbedoSpace(spectral_table(tissue))

@@ -1,0 +1,54 @@
+"""Reflectance spectra → XYZ and linear RGB.
+
+RGB here is linear sRGB: Rec.709 primaries, and a perfect white reflector is exactly (1, 1, 1)
+under whichever illuminant it is seen, as if the camera were balanced on it.
+"""
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from cutis.colour.observer import colour_matching, illuminant, wavelengths
+from cutis.errors import CutisError
+
+XYZ_TO_SRGB = np.array(
+    [
+        [3.2404541621141054, -1.5371385127977166, -0.4985314095560162],
+        [-0.9692660305051868, 1.8760108454466942, 0.0415560175303498],
+        [0.0556434309591147, -0.2040259135167538, 1.0572251882231791],
+    ]
+)
+"""XYZ (Y of white = 1) → linear sRGB, from primaries and the D65 white (0.3127, 0.3290)
+[iec61966]."""
+
+
+def spectrum_to_xyz(wavelength: ArrayLike, light: str = "D65") -> NDArray[np.float64]:
+    """(n, 3) matrix that turns reflectance at `wavelength` (n,) nm into XYZ, Y of white = 1.
+
+    The spectrum is taken as piecewise linear between its wavelengths and constant past its ends,
+    and summed against observer and illuminant every 5 nm.
+    """
+    return _xyz_matrix(tuple(np.asarray(wavelength, dtype=np.float64)), light).copy()
+
+
+@lru_cache(maxsize=32)
+def _xyz_matrix(lam: tuple[float, ...], light: str) -> NDArray[np.float64]:
+    if len(lam) < 2 or not np.all(np.diff(lam) > 0):
+        raise CutisError("wavelengths must be at least two, in nm and increasing")
+    power = illuminant(light)[:, None] * colour_matching()
+    hats = np.stack([np.interp(wavelengths(), lam, np.eye(len(lam))[i]) for i in range(len(lam))])
+    return hats @ power / power[:, 1].sum()
+
+
+def spectrum_to_rgb(wavelength: ArrayLike, light: str = "D65") -> NDArray[np.float64]:
+    """(n, 3) matrix that turns reflectance at `wavelength` (n,) nm into linear sRGB."""
+    matrix = spectrum_to_xyz(wavelength, light) @ XYZ_TO_SRGB.T
+    return matrix / matrix.sum(axis=0)
+
+
+def reflectance_to_rgb(
+    reflectance: ArrayLike, wavelength: ArrayLike, light: str = "D65"
+) -> NDArray[np.float64]:
+    """(..., n) reflectance in [0, 1] at (n,) nm → (..., 3) linear sRGB; white gives (1, 1, 1)."""
+    return np.asarray(reflectance) @ spectrum_to_rgb(wavelength, light)

@@ -1,0 +1,235 @@
+"""Training of encoder and decoder with PyTorch (extra `train`).
+
+The recipe of the paper is `RECIPES["aliaga2022"]`: parameter L2 in network coordinates, albedo L1
+of the decoder, L1 of the cycle encoder → decoder, Adam. Every epoch is a function of the seed and
+its number, and checkpoints hold the optimiser, so a run that was killed goes on as if it had not
+been.
+"""
+
+import csv
+import json
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from safetensors.torch import load_file, save_file
+
+from cutis.albedo import albedo_space, halton, uniform
+from cutis.errors import CutisError
+from cutis.inverse.network import layer_sizes
+from cutis.optics import NAMES, to_coordinates
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """How to train. `pairs` are split into Halton training and uniform validation skins."""
+
+    name: str = "aliaga2022"
+    pairs: int = 600_000
+    training_share: float = 0.8
+    epochs: int = 400
+    batch: int = 4096
+    learning_rate: float = 1e-4
+    schedule: str = "constant"
+    seed: int = 2022
+
+
+RECIPES = {
+    "aliaga2022": Recipe(),
+    "aliaga2022-cosine": Recipe(
+        name="aliaga2022-cosine", epochs=100, learning_rate=4e-3, schedule="cosine", batch=2048
+    ),
+    "smoke": Recipe(name="smoke", pairs=20_000, epochs=12, batch=512, learning_rate=3e-3),
+}
+"""The paper's recipe, one with a learning-rate schedule, and a small one for tests."""
+
+Progress = Callable[[int, int, float], None]
+"""Called with (epochs done, epochs, latest training loss)."""
+
+
+class _Networks(torch.nn.Module):
+    """Encoder and decoder under the names that the weights are stored by."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        for half, ends in (("encoder", (3, 5)), ("decoder", (5, 3))):
+            layers = [torch.nn.Linear(i, o) for i, o in layer_sizes(*ends)]
+            setattr(self, half, torch.nn.ModuleList(layers))
+
+    def encode(self, rgb: torch.Tensor) -> torch.Tensor:
+        return _forward(self.encoder, rgb)
+
+    def decode(self, coordinates: torch.Tensor) -> torch.Tensor:
+        return _forward(self.decoder, coordinates)
+
+
+def _forward(layers: torch.nn.ModuleList, x: torch.Tensor) -> torch.Tensor:
+    for layer in layers[:-1]:
+        x = torch.tanh(layer(x))
+    return torch.sigmoid(layers[-1](x))
+
+
+def dataset(recipe: Recipe) -> tuple[tuple[torch.Tensor, torch.Tensor], ...]:
+    """Training and validation pairs, each (n, 5) coordinates and (n, 3) linear sRGB."""
+    training = round(recipe.pairs * recipe.training_share)
+    space = albedo_space()
+    sets = []
+    for skins in (
+        halton(training, recipe.seed),
+        uniform(recipe.pairs - training, recipe.seed + 1),
+    ):
+        u = to_coordinates(skins).astype(np.float32)
+        sets.append((torch.from_numpy(u), torch.from_numpy(space.rgb(skins))))
+    return tuple(sets)
+
+
+def train(recipe: Recipe, folder: Path, progress: Progress | None = None) -> dict[str, object]:
+    """Trains into `folder`: weights.safetensors, metrics.json, curves.csv; returns the metrics.
+
+    A run found there with the same recipe is continued; one with another recipe raises
+    CutisError.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    torch.manual_seed(recipe.seed)
+    networks = _Networks()
+    optimiser = torch.optim.Adam(networks.parameters(), lr=recipe.learning_rate)
+    state = _resume(recipe, folder, networks, optimiser)
+    (u, rgb), validation = dataset(recipe)
+    steps = -(-len(u) // recipe.batch)
+    total = steps * recipe.epochs
+
+    started = time.perf_counter() - float(state["seconds"])
+    curves: list[dict[str, float]] = state["curves"]
+    for epoch in range(int(state["epochs"]), recipe.epochs):
+        order = torch.randperm(len(u), generator=torch.Generator().manual_seed(epoch))
+        running = torch.zeros(())
+        for step, rows in enumerate(order.split(recipe.batch)):
+            for group in optimiser.param_groups:
+                group["lr"] = _learning_rate(recipe, (epoch * steps + step) / total)
+            optimiser.zero_grad(set_to_none=True)
+            loss = sum(_losses(networks, u[rows], rgb[rows]))
+            loss.backward()
+            optimiser.step()
+            running += loss.detach()
+        if (epoch + 1) % max(1, recipe.epochs // 40) == 0 or epoch + 1 == recipe.epochs:
+            with torch.no_grad():
+                parameter, albedo, cycle = (float(x) for x in _losses(networks, *validation))
+            curves.append(
+                {
+                    "epoch": epoch + 1,
+                    "training_loss": float(running) / steps,
+                    "validation_parameter_l2": parameter,
+                    "validation_albedo_l1": albedo,
+                    "validation_cycle_l1": cycle,
+                }
+            )
+            state = {"epochs": epoch + 1, "seconds": time.perf_counter() - started}
+            _checkpoint(recipe, folder, networks, optimiser, {**state, "curves": curves})
+        if progress:
+            progress(epoch + 1, recipe.epochs, float(running) / steps)
+
+    metrics = {
+        "recipe": asdict(recipe),
+        "seconds": round(time.perf_counter() - started, 1),
+        "threads": torch.get_num_threads(),
+        "validation": evaluate(networks, *validation),
+    }
+    _write(folder / "weights.safetensors", lambda p: save_file(networks.state_dict(), p))
+    _write(folder / "metrics.json", lambda p: p.write_text(json.dumps(metrics, indent=2) + "\n"))
+    return metrics
+
+
+def evaluate(networks: _Networks, u: torch.Tensor, rgb: torch.Tensor) -> dict[str, object]:
+    """Mean squared error and R² per parameter, decoder L1 and cycle L1, over given skins."""
+    with torch.no_grad():
+        estimate = networks.encode(rgb)
+        _, albedo, cycle = _losses(networks, u, rgb)
+    error = ((estimate - u) ** 2).mean(0)
+    variance = ((u - u.mean(0)) ** 2).mean(0)
+    return {
+        "parameter_mse": _named(error.numpy()),
+        "parameter_r2": _named(1.0 - (error / variance).numpy()),
+        "decoder_l1": float(albedo),
+        "cycle_l1": float(cycle),
+    }
+
+
+def _named(values: NDArray[np.float32]) -> dict[str, float]:
+    return {name: float(value) for name, value in zip(NAMES, values, strict=True)}
+
+
+def _losses(
+    networks: _Networks, u: torch.Tensor, rgb: torch.Tensor
+) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
+    estimate = networks.encode(rgb)
+    decoded = networks.decode(torch.cat([u, estimate]))
+    albedo, cycle = decoded[: len(u)], decoded[len(u) :]
+    return (
+        ((estimate - u) ** 2).mean(),
+        (albedo - rgb).abs().mean(),
+        (cycle - rgb).abs().mean(),
+    )
+
+
+def _learning_rate(recipe: Recipe, done: float) -> float:
+    if recipe.schedule == "constant":
+        return recipe.learning_rate
+    return recipe.learning_rate * (0.5 + 0.5 * float(np.cos(np.pi * done)))
+
+
+def _checkpoint(
+    recipe: Recipe,
+    folder: Path,
+    networks: _Networks,
+    optimiser: torch.optim.Optimizer,
+    state: dict[str, object],
+) -> None:
+    tensors = {f"network/{name}": value for name, value in networks.state_dict().items()}
+    for i, slots in optimiser.state_dict()["state"].items():
+        tensors.update({f"adam/{i}/{name}": value for name, value in slots.items()})
+    note = {"state": json.dumps({**state, "recipe": asdict(recipe)})}
+    _write(folder / "checkpoint.safetensors", lambda p: save_file(tensors, p, note))
+    with (folder / "curves.csv").open("w", newline="") as file:
+        writer = csv.DictWriter(file, state["curves"][0])
+        writer.writeheader()
+        writer.writerows(state["curves"])
+
+
+def _resume(
+    recipe: Recipe, folder: Path, networks: _Networks, optimiser: torch.optim.Optimizer
+) -> dict[str, object]:
+    """Restores the checkpoint in `folder` if there is one; (epochs, seconds, curves) so far."""
+    from safetensors import safe_open
+
+    path = folder / "checkpoint.safetensors"
+    if not path.exists():
+        return {"epochs": 0, "seconds": 0.0, "curves": []}
+    with safe_open(path, "pt") as file:
+        state = json.loads(file.metadata()["state"])
+    if state.pop("recipe") != asdict(recipe):
+        raise CutisError(f"{folder} holds a run of another recipe; give another folder with -o")
+    tensors = load_file(path)
+    networks.load_state_dict(
+        {k.removeprefix("network/"): v for k, v in tensors.items() if k.startswith("network/")}
+    )
+    slots: dict[int, dict[str, torch.Tensor]] = {}
+    for key, value in tensors.items():
+        if key.startswith("adam/"):
+            _, i, name = key.split("/")
+            slots.setdefault(int(i), {})[name] = value
+    adam = optimiser.state_dict()
+    optimiser.load_state_dict({"state": slots, "param_groups": adam["param_groups"]})
+    return state
+
+
+def _write(path: Path, write: Callable[[Path], object]) -> None:
+    """Writes beside `path` and renames, so that a killed run leaves no half file."""
+    partial = path.with_name(f".{path.name}.partial")
+    write(partial)
+    partial.replace(path)
+
+

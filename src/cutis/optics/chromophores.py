@@ -1,0 +1,88 @@
+"""Absorption of the substances that colour skin.
+
+Every function takes wavelengths in nm (any shape) and returns a natural-log absorption
+coefficient in cm⁻¹ of the *pure* substance at the stated concentration, same shape, float64.
+Tabulated substances are interpolated linearly and may be asked for 250–1000 nm (haemoglobin) or
+from 250 nm up (bilirubin and β-carotene, which do not absorb past 700 nm); outside, they raise.
+"""
+
+from functools import cache
+from importlib import resources
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from cutis.errors import CutisError
+
+LN10 = float(np.log(10.0))
+"""Turns a decadic (molar extinction) coefficient into a natural-log absorption coefficient."""
+
+HEMOGLOBIN_MOLAR_MASS = 64500.0
+"""g/mol, tetramer [prahl1999hemoglobin]."""
+BILIRUBIN_MOLAR_MASS = 584.66
+"""g/mol [aliaga2022, appendix]."""
+BETA_CAROTENE_MOLAR_MASS = 536.8726
+"""g/mol [aliaga2022, appendix]."""
+
+
+@cache
+def _table(name: str) -> NDArray[np.float64]:
+    """Rows of a packaged CSV as a (columns, rows) array; `#` lines and one header row skipped."""
+    text = resources.files("cutis.data").joinpath("chromophores", f"{name}.csv").read_text("utf-8")
+    rows = [line for line in text.splitlines() if line and not line.startswith("#")]
+    table = np.array([[float(cell) for cell in row.split(",")] for row in rows[1:]]).T
+    table.flags.writeable = False
+    return table
+
+
+def _interpolate(
+    name: str, column: int, wavelength: ArrayLike, zero_past_end: bool
+) -> NDArray[np.float64]:
+    table = _table(name)
+    nodes, values = table[0], np.maximum(table[column], 0.0)  # noise around zero is not gain
+    lam = np.asarray(wavelength, dtype=np.float64)
+    if lam.size and (lam.min() < nodes[0] or (lam.max() > nodes[-1] and not zero_past_end)):
+        raise CutisError(
+            f"{name}: wavelengths {lam.min():g}-{lam.max():g} nm are outside the table "
+            f"({nodes[0]:g}-{nodes[-1]:g} nm); choose wavelengths in nm inside it"
+        )
+    return np.interp(lam, nodes, values, right=0.0 if zero_past_end else None)
+
+
+def eumelanin(wavelength: ArrayLike) -> NDArray[np.float64]:
+    """Eumelanin in the melanosome, 6.6e11 λ^−3.33 cm⁻¹ [donner2006, after jacques1991]."""
+    return 6.6e11 * np.asarray(wavelength, dtype=np.float64) ** -3.33
+
+
+def pheomelanin(wavelength: ArrayLike) -> NDArray[np.float64]:
+    """Pheomelanin in the melanosome, 2.9e15 λ^−4.75 cm⁻¹ [donner2006, after sarna2006]."""
+    return 2.9e15 * np.asarray(wavelength, dtype=np.float64) ** -4.75
+
+
+def baseline(wavelength: ArrayLike) -> NDArray[np.float64]:
+    """Bloodless, melanin-free tissue, 7.84e8 λ^−3.255 cm⁻¹ [saidi1992]."""
+    return 7.84e8 * np.asarray(wavelength, dtype=np.float64) ** -3.255
+
+
+def oxyhemoglobin(wavelength: ArrayLike, concentration: float = 150.0) -> NDArray[np.float64]:
+    """Oxygenated haemoglobin at `concentration` g/L of blood [prahl1999hemoglobin]."""
+    molar = concentration / HEMOGLOBIN_MOLAR_MASS
+    return LN10 * molar * _interpolate("hemoglobin_prahl", 1, wavelength, zero_past_end=False)
+
+
+def deoxyhemoglobin(wavelength: ArrayLike, concentration: float = 150.0) -> NDArray[np.float64]:
+    """Deoxygenated haemoglobin at `concentration` g/L of blood [prahl1999hemoglobin]."""
+    molar = concentration / HEMOGLOBIN_MOLAR_MASS
+    return LN10 * molar * _interpolate("hemoglobin_prahl", 2, wavelength, zero_past_end=False)
+
+
+def bilirubin(wavelength: ArrayLike, concentration: float = 0.05) -> NDArray[np.float64]:
+    """Bilirubin at `concentration` g/L, extinction in chloroform [photochemcad]."""
+    molar = concentration / BILIRUBIN_MOLAR_MASS
+    return LN10 * molar * _interpolate("bilirubin_chloroform", 1, wavelength, zero_past_end=True)
+
+
+def beta_carotene(wavelength: ArrayLike, concentration: float = 2.1e-4) -> NDArray[np.float64]:
+    """β-carotene at `concentration` g/L, extinction in hexane [photochemcad]."""
+    molar = concentration / BETA_CAROTENE_MOLAR_MASS
+    return LN10 * molar * _interpolate("beta_carotene_hexane", 1, wavelength, zero_past_end=True)

@@ -1,0 +1,90 @@
+"""The five free parameters of a skin: names, units, ranges and network coordinates.
+
+A *coordinate* u ∈ [0, 1] is the warped form of a parameter in which sampling, losses, smoothness
+and priors are expressed: u = (p^(1/k) − low^(1/k)) / (high^(1/k) − low^(1/k)), with k = 3 for
+melanin, 4 for blood and 1 for the others [aliaga2022, albedo space parametrisation].
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from cutis.errors import CutisError
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One free parameter: what it means, its unit and its range."""
+
+    name: str
+    symbol: str
+    meaning: str
+    unit: str
+    low: float
+    high: float
+    root: int
+
+    def to_coordinate(self, value: ArrayLike) -> NDArray[np.floating]:
+        """Parameter in its unit → coordinate u ∈ [0, 1]; any shape, not clamped."""
+        low, high = self.low ** (1 / self.root), self.high ** (1 / self.root)
+        return (np.asarray(value) ** (1 / self.root) - low) / (high - low)
+
+    def from_coordinate(self, coordinate: ArrayLike) -> NDArray[np.floating]:
+        """Coordinate u ∈ [0, 1] → parameter in its unit; any shape, clamped to the range."""
+        low, high = self.low ** (1 / self.root), self.high ** (1 / self.root)
+        value = (low + np.asarray(coordinate) * (high - low)) ** self.root
+        return np.clip(value, self.low, self.high)
+
+    def check(self, value: float) -> float:
+        """Returns `value`, or raises CutisError when it is not a number inside the range."""
+        if not self.low <= value <= self.high:  # also catches NaN
+            raise CutisError(
+                f"{self.name} = {value:g} is outside its range "
+                f"{self.low:g} to {self.high:g}{' ' + self.unit if self.unit != '1' else ''}"
+            )
+        return value
+
+
+MELANIN = Parameter("melanin", "V_m", "melanosome volume fraction, epidermis", "1", 0.001, 1.0, 3)
+BLOOD = Parameter("blood", "V_b", "blood volume fraction, dermis", "1", 0.001, 1.0, 4)
+THICKNESS = Parameter("thickness", "t", "epidermal thickness", "µm", 10.0, 250.0, 1)
+EUMELANIN = Parameter("eumelanin", "φ_m", "eumelanin share of melanin", "1", 0.001, 1.0, 1)
+OXYGENATION = Parameter(
+    "oxygenation", "1−φ_h", "oxygenated share of haemoglobin", "1", 0.0, 0.999, 1
+)
+
+PARAMETERS = (MELANIN, BLOOD, THICKNESS, EUMELANIN, OXYGENATION)
+"""The five, in the order of every (..., 5) array of this package."""
+NAMES = tuple(p.name for p in PARAMETERS)
+"""Their names, in the same order."""
+TYPICAL = {"melanin": 0.02, "blood": 0.02, "thickness": 80.0, "eumelanin": 0.7, "oxygenation": 0.7}
+"""A light skin, for single skins whose other parameters were not given."""
+
+
+def parameter(name: str) -> Parameter:
+    """The parameter called `name`; raises CutisError naming the five when there is none."""
+    for candidate in PARAMETERS:
+        if candidate.name == name:
+            return candidate
+    raise CutisError(f"unknown parameter {name!r}; the five are {', '.join(NAMES)}")
+
+
+def to_coordinates(parameters: ArrayLike) -> NDArray[np.floating]:
+    """(..., 5) parameters in their units → (..., 5) coordinates u ∈ [0, 1]."""
+    values = np.asarray(parameters)
+    return np.stack([p.to_coordinate(values[..., i]) for i, p in enumerate(PARAMETERS)], axis=-1)
+
+
+def from_coordinates(coordinates: ArrayLike) -> NDArray[np.floating]:
+    """(..., 5) coordinates u ∈ [0, 1] → (..., 5) parameters in their units, clamped to range."""
+    u = np.asarray(coordinates)
+    return np.stack([p.from_coordinate(u[..., i]) for i, p in enumerate(PARAMETERS)], axis=-1)
+
+
+def skin(values: Mapping[str, float]) -> NDArray[np.float64]:
+    """(5,) parameters of one skin from a mapping; those missing are TYPICAL, all checked."""
+    for name in values:
+        parameter(name)
+    return np.array([p.check(float(values.get(p.name, TYPICAL[p.name]))) for p in PARAMETERS])

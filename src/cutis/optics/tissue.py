@@ -1,0 +1,90 @@
+"""Two-layer skin: parameters → absorption and scattering of epidermis and dermis.
+
+A tissue is an immutable value that holds every constant, so that a published model, a calibrated
+variant and a user's own differ in data, not in code (`dataclasses.replace`).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from cutis.optics import chromophores
+
+WAVELENGTHS = np.arange(380.0, 781.0, 10.0)
+"""nm, the 41 bands of every spectrum of this package."""
+WAVELENGTHS.flags.writeable = False
+
+
+@dataclass(frozen=True)
+class Tissue:
+    """Constants shared by all skins of a model. Concentrations in g/L, scattering in cm⁻¹."""
+
+    name: str
+    hemoglobin: float = 150.0
+    bilirubin: float = 0.05
+    beta_carotene_epidermis: float = 2.1e-4
+    beta_carotene_dermis: float = 7e-5
+    scattering_500: float = 36.4
+    rayleigh_fraction: float = 0.48
+    mie_power: float = 0.22
+    anisotropy_offset: float = 0.62
+    anisotropy_slope: float = 0.29e-3
+    refractive_index: float = 1.4
+    dimension: int = 2
+    boundary: str = "matched"
+
+    def anisotropy(self, wavelength: ArrayLike) -> NDArray[np.float64]:
+        """g = ⟨cos θ⟩ of both layers; 0.73 at 380 nm to 0.85 at 780 nm [vangemert1989]."""
+        lam = np.asarray(wavelength, dtype=np.float64)
+        return self.anisotropy_offset + self.anisotropy_slope * lam
+
+    def reduced_scattering(self, wavelength: ArrayLike) -> NDArray[np.float64]:
+        """μs′ of both layers, cm⁻¹ [jacques2013, coefficients of bashkatov2011]."""
+        x = np.asarray(wavelength, dtype=np.float64) / 500.0
+        rayleigh = self.rayleigh_fraction * x**-4.0
+        mie = (1.0 - self.rayleigh_fraction) * x**-self.mie_power
+        return self.scattering_500 * (rayleigh + mie)
+
+    def scattering(self, wavelength: ArrayLike) -> NDArray[np.float64]:
+        """μs = μs′ / (1 − g) of both layers, cm⁻¹."""
+        return self.reduced_scattering(wavelength) / (1.0 - self.anisotropy(wavelength))
+
+    def epidermis_absorption(
+        self, melanin: ArrayLike, eumelanin: ArrayLike, wavelength: ArrayLike
+    ) -> NDArray[np.float64]:
+        """μa of the epidermis, cm⁻¹; melanin and eumelanin (...,), result (..., wavelengths)."""
+        v_m = np.asarray(melanin, dtype=np.float64)[..., None]
+        phi = np.asarray(eumelanin, dtype=np.float64)[..., None]
+        lam = np.atleast_1d(wavelength)
+        pigment = phi * chromophores.eumelanin(lam) + (1 - phi) * chromophores.pheomelanin(lam)
+        return v_m * pigment + (1 - v_m) * self.epidermis_background(lam)
+
+    def dermis_absorption(
+        self, blood: ArrayLike, oxygenation: ArrayLike, wavelength: ArrayLike
+    ) -> NDArray[np.float64]:
+        """μa of the dermis, cm⁻¹; blood and oxygenation (...,), result (..., wavelengths)."""
+        v_b = np.asarray(blood, dtype=np.float64)[..., None]
+        oxy = np.asarray(oxygenation, dtype=np.float64)[..., None]
+        lam = np.atleast_1d(wavelength)
+        deoxygenated, oxygenated = self.whole_blood(lam)
+        whole = oxy * oxygenated + (1 - oxy) * deoxygenated
+        return v_b * whole + (1 - v_b) * chromophores.baseline(lam)
+
+    def epidermis_background(self, wavelength: ArrayLike) -> NDArray[np.float64]:
+        """μa of epidermis without melanin, cm⁻¹: β-carotene and baseline."""
+        carotene = chromophores.beta_carotene(wavelength, self.beta_carotene_epidermis)
+        return carotene + chromophores.baseline(wavelength)
+
+    def whole_blood(self, wavelength: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """μa of fully deoxygenated and fully oxygenated blood, cm⁻¹, pigments in it included."""
+        dissolved = chromophores.bilirubin(wavelength, self.bilirubin)
+        dissolved = dissolved + chromophores.beta_carotene(wavelength, self.beta_carotene_dermis)
+        return (
+            chromophores.deoxyhemoglobin(wavelength, self.hemoglobin) + dissolved,
+            chromophores.oxyhemoglobin(wavelength, self.hemoglobin) + dissolved,
+        )
+
+
+ALIAGA2022 = Tissue(name="aliaga2022")
+"""The model of the paper: flatland transport, index-matched boundary [aliaga2022]."""

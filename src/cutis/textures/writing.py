@@ -1,0 +1,141 @@
+"""Textures to PNG, JPEG, TIFF and OpenEXR files."""
+
+import os
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import OpenImageIO as oiio
+from numpy.typing import NDArray
+
+from cutis.textures.encoding import encode
+from cutis.textures.problem import problem
+from cutis.textures.texture import Encoding, Texture, bands, colour_channels, from_unit, to_unit
+
+FORMATS = {
+    ".png": "png",
+    ".jpg": "jpeg",
+    ".jpeg": "jpeg",
+    ".tif": "tiff",
+    ".tiff": "tiff",
+    ".exr": "openexr",
+}
+# What each format stores a type as, and how many channels it takes.
+_STORED_AS = {
+    "png": {"float16": "uint16", "float32": "uint16"},
+    "jpeg": {"uint16": "uint8", "float16": "uint8", "float32": "uint8"},
+    "tiff": {"float16": "float32"},
+    "openexr": {"uint8": "float16", "uint16": "float32"},
+}
+_MOST_CHANNELS = {"png": 4, "jpeg": 3}
+# Other compressions would change texels that nobody touched, or are not in every build.
+_LOSSLESS = {
+    "tiff": {"none", "lzw", "zip", "packbits"},
+    "openexr": {"none", "rle", "zip", "zips", "piz"},
+}
+# Metadata that means nothing outside the format it came from.
+_PRIVATE = r"(tiff|png|jpeg|openexr|oiio):.*|compression|planarconfig|name|screenWindow.*"
+
+
+def write_texture(texture: Texture, path: str | os.PathLike[str]) -> None:
+    """Write a texture in the format that the extension names, with its metadata.
+
+    Written back in the format it came from, a texture keeps its stored values bit for bit (JPEG
+    aside, which is lossy), its channels, type, compression where lossless, and metadata. Else:
+
+    * PNG takes float as 16 bit sRGB, JPEG everything as 8 bit at quality 98, TIFF float16 as
+      float32, OpenEXR uint8 as half and uint16 as float, both made linear and associated;
+    * PNG keeps only R, G, B and A, JPEG only R, G, B;
+    * an ICC profile is kept where the encoding is (OpenEXR holds none).
+
+    Of an OpenEXR file of several parts only the first was read, so only that is written. EXIF of
+    the camera survives in JPEG and PNG, not in TIFF, where OpenImageIO does not reach it.
+
+    Raises CutisError, one line that names the file, for an unknown extension or a failed write;
+    a file that was there is then untouched.
+    """
+    path = Path(path)
+    file_format = FORMATS.get(path.suffix.lower())
+    if file_format is None:
+        known = ", ".join(FORMATS)
+        raise problem(path, f"has an extension that is none of {known}; choose one of these")
+    fitted = _fitted(texture, file_format)
+    encode(path, file_format, _spec(texture, fitted, file_format), fitted.pixels)
+
+
+def _fitted(texture: Texture, file_format: str) -> Texture:
+    """The texture as `file_format` can store it; the same one where nothing needs to change."""
+    old = texture.pixels.dtype
+    dtype = np.dtype(_STORED_AS[file_format].get(old.name, old.name))
+    encoding: Encoding = texture.encoding
+    if dtype.kind != old.kind:
+        encoding = "linear" if dtype.kind == "f" else "srgb"
+    if file_format != texture.format:
+        texture = _arranged(texture, _MOST_CHANNELS.get(file_format))
+    _, alpha = colour_channels(texture.channels)
+    associated = alpha is not None and (
+        file_format == "openexr" or (file_format == "tiff" and texture.associated)
+    )
+    if (dtype, encoding, associated) == (old, texture.encoding, texture.associated):
+        return texture
+    pixels = np.empty(texture.pixels.shape, dtype)
+    for rows in bands(texture.shape):
+        pixels[rows] = from_unit(to_unit(texture.pixels[rows]), dtype)
+    blank = Texture(pixels, texture.channels, encoding, associated=associated)
+    return blank.with_linear(texture.linear(), np.ones(texture.shape, bool))
+
+
+def _arranged(texture: Texture, most: int | None) -> Texture:
+    """Channels in the order R, G, B, A, others, under these names, the first `most` of them."""
+    rgb, alpha = colour_channels(texture.channels)
+    first = [*rgb, *([] if alpha is None else [alpha])]
+    others = [column for column in range(len(texture.channels)) if column not in first]
+    columns = [*first, *others][:most]
+    names = [*"RGBA"[: len(first)], *(texture.channels[column] for column in others)][:most]
+    if columns == list(range(len(texture.channels))):
+        return replace(texture, channels=tuple(names))
+    associated = texture.associated and "A" in names
+    colour = texture.linear() if texture.associated and not associated else None
+    pixels = texture.pixels[..., columns]
+    out = replace(texture, pixels=pixels, channels=tuple(names), associated=associated)
+    return out if colour is None else out.with_linear(colour, np.ones(out.shape, bool))
+
+
+def _spec(source: Texture, fitted: Texture, file_format: str) -> oiio.ImageSpec:
+    """The header: that of the source as far as it fits the format."""
+    spec = oiio.ImageSpec() if source.spec is None else source.spec.copy()
+    same_format = source.spec is not None and source.format == file_format
+    mixed = spec.channelformats if same_format else ()
+    (height, width), count = fitted.shape, len(fitted.channels)
+    if (spec.width, spec.height) != (width, height) or not same_format:
+        spec.x = spec.y = spec.full_x = spec.full_y = 0
+        spec.full_width, spec.full_height = width, height
+        spec.tile_width = spec.tile_height = spec.tile_depth = 0
+    spec.width, spec.height, spec.depth, spec.nchannels = width, height, 1, count
+    spec.full_depth = 1
+    spec.channelnames = fitted.channels
+    spec.set_format(oiio.TypeDesc(_type_name(fitted.pixels)))
+    if len(mixed) == count and fitted.pixels.dtype == np.float32:
+        spec.channelformats = mixed
+    names = [name.lower() for name in fitted.channels]
+    spec.alpha_channel = names.index("a") if "a" in names else -1
+    spec.z_channel = names.index("z") if "z" in names else -1
+    if not same_format:
+        spec.erase_attribute(_PRIVATE)
+    if fitted.encoding != source.encoding:
+        spec.erase_attribute(r"ICCProfile.*")
+    for gone in ("oiio:UnassociatedAlpha", "oiio:BitsPerSample", "oiio:subimages"):
+        spec.erase_attribute(gone)
+    if spec.alpha_channel >= 0 and not fitted.associated:
+        spec.attribute("oiio:UnassociatedAlpha", 1)
+    if file_format in _LOSSLESS and spec.getattribute("compression") not in _LOSSLESS[file_format]:
+        spec.attribute("compression", "zip")
+    if file_format == "jpeg":
+        spec.attribute("compression", "jpeg:98")
+        if not same_format:
+            spec.attribute("jpeg:subsampling", "4:4:4")
+    return spec
+
+
+def _type_name(pixels: NDArray[np.generic]) -> str:
+    return {"float16": "half", "float32": "float"}.get(pixels.dtype.name, pixels.dtype.name)

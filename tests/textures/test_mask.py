@@ -1,0 +1,67 @@
+import numpy as np
+import pytest
+
+from cutis.errors import CutisError
+from cutis.textures import read_mask, write_channels
+
+
+def refused(path, shape, one_line, match):
+    with pytest.raises(CutisError, match=match) as caught:
+        read_mask(path, shape)
+    return one_line(caught, path)
+
+
+@pytest.mark.parametrize(
+    ("extension", "dtype", "largest"),
+    [("png", "uint8", 255), ("png", "uint16", 65535), ("tif", "uint8", 255), ("exr", "float32", 1)],
+)
+@pytest.mark.parametrize("count", [1, 2, 3, 4])
+def test_stored_values_count_as_they_are(tmp_path, make, extension, dtype, largest, count):
+    random = np.random.default_rng(3)
+    pixels = (random.random((5, 7, count)) * largest).astype(dtype)
+    straight = {"oiio:UnassociatedAlpha": 1} if count in (2, 4) and extension != "exr" else None
+    path = make.image(tmp_path / f"m.{extension}", pixels, attributes=straight)
+    if (extension, count) == ("exr", 2):  # sorted by name on the way: A comes before Y
+        pixels = pixels[..., ::-1]
+    stored = make.read(path)[0] / largest
+    mask = read_mask(path, (5, 7))
+    expected = stored[..., 0] if count < 3 else stored[..., :3].mean(-1)
+    assert mask.dtype == np.float32
+    np.testing.assert_allclose(mask, expected, atol=1e-6)
+
+
+def test_jpeg_palette_and_one_bit(tmp_path, make):
+    white = np.full((4, 4, 1), 255, np.uint8)
+    assert read_mask(make.image(tmp_path / "m.jpg", white), (4, 4)).min() == 1
+    rows = (b"\0" + bytes([3, 3, 0, 0])) * 4
+    path = make.png(tmp_path / "p.png", 4, 4, colour=3, rows=rows)
+    with pytest.raises(CutisError, match="empty"):  # the palette is nearly black: expanded
+        read_mask(path, (4, 4))
+    bits = make.tiff(tmp_path / "b.tif", 8, 2, 1, bits=1, photometric=1, data=b"\xaa\xaa")
+    assert read_mask(bits, (2, 8)).tolist() == [[1, 0] * 4] * 2
+
+
+def test_values_clip_to_the_unit_interval(tmp_path, make):
+    path = make.image(tmp_path / "m.exr", np.array([[[-3], [0.5], [7]]], np.float32))
+    assert read_mask(path, (1, 3)).tolist() == [[0, 0.5, 1]]
+
+
+def test_the_channel_called_mask_wins(tmp_path):
+    path = tmp_path / "maps.exr"
+    inside = np.array([[0.0, 1.0]])
+    write_channels(path, {"blood": inside * 0 + 0.7, "mask": inside, "x": inside, "y": inside})
+    assert read_mask(path, (1, 2)).tolist() == inside.tolist()
+
+
+def test_refusals(tmp_path, make, one_line):
+    path = make.image(tmp_path / "m.png", np.full((5, 7, 1), 255, np.uint8))
+    message = refused(path, (7, 5), one_line, "resize")
+    assert "7 × 5" in message
+    assert "5 × 7" in message
+    dark = make.image(tmp_path / "d.png", np.full((5, 7, 1), 127, np.uint8))
+    refused(dark, (5, 7), one_line, "empty")
+    bad = make.image(tmp_path / "n.exr", np.full((5, 7, 1), np.nan, np.float32))
+    refused(bad, (5, 7), one_line, "NaN")
+    other = make.image(tmp_path / "o.exr", np.ones((5, 7, 3), np.float32), ["X", "Y", "Z"])
+    refused(other, (5, 7), one_line, "called mask")
+    refused(tmp_path / "none.png", (5, 7), one_line, "no such file")
