@@ -1,4 +1,4 @@
-"""Writes src/cutis/data/colour/*.csv from colour-science: run `python tools/build_colour_tables.py`."""
+"""Writes src/cutis/data/colour/*.csv: run `python tools/build_colour_tables.py`."""
 
 from pathlib import Path
 

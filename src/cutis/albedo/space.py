@@ -45,6 +45,11 @@ class AlbedoSpace:
     def _to_rgb(self) -> NDArray[np.float32]:
         return spectrum_to_rgb(WAVELENGTHS).astype(np.float32)
 
+    @property
+    def model(self) -> tuple[NDArray[np.float32], ...]:
+        """What the kernels of `spline.py` take after the skins: spectra to RGB weights."""
+        return (*self._model, self._to_rgb)
+
     def reflectance(self, parameters: ArrayLike) -> NDArray[np.float32]:
         """(..., 5) parameters → (..., 41) reflectance in [0, 1] at `optics.WAVELENGTHS`."""
         from cutis.albedo.spline import reflectance_kernel
@@ -94,7 +99,11 @@ def _bands(count: int) -> Iterator[slice]:
     return (slice(start, start + BAND) for start in range(0, count, BAND))
 
 
-@lru_cache(maxsize=4)
 def albedo_space(tissue: Tissue = ALIAGA2022) -> AlbedoSpace:
     """The albedo space of `tissue`, made once per process."""
+    return _albedo_space(tissue)
+
+
+@lru_cache(maxsize=4)
+def _albedo_space(tissue: Tissue) -> AlbedoSpace:
     return AlbedoSpace(spectral_table(tissue))

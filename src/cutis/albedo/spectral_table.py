@@ -7,12 +7,12 @@ B-splines of CELLS cells, whose values and gradients are cheap (`spline.py`). Wo
 the solver over the whole range: docs/albedo.md.
 """
 
+import json
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from functools import lru_cache
 from importlib import resources
-import json
 from typing import IO
 
 import numpy as np
@@ -27,7 +27,8 @@ NODES = (18, 18, 16)
 CELLS = (24, 24, 16)
 """Cells of the cubic B-splines over the same axes."""
 ORDINATES = 24
-"""Directions per hemisphere; the albedo is then converged to 3e-6 (docs/transport.md)."""
+"""Directions per hemisphere; the albedo is then converged to 5e-6, or 2e-5 with a Fresnel
+boundary (docs/transport.md)."""
 
 
 @dataclass(frozen=True)
@@ -47,13 +48,11 @@ class SpectralTable:
 
 def axis_ranges(tissue: Tissue) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """(41, 3) lowest and highest μa_e^¼, μa_d^¼ and log t that the parameter ranges reach."""
-    ends = np.array([0.0, 1.0])
-    epidermis = tissue.epidermis_absorption(
-        *np.meshgrid([MELANIN.low, MELANIN.high], ends), WAVELENGTHS
-    ).reshape(4, -1)
-    dermis = tissue.dermis_absorption(
-        *np.meshgrid([BLOOD.low, BLOOD.high], ends), WAVELENGTHS
-    ).reshape(4, -1)
+    share = np.array([0.0, 0.0, 1.0, 1.0])
+    melanin = np.array([MELANIN.low, MELANIN.high, MELANIN.low, MELANIN.high])
+    blood = np.array([BLOOD.low, BLOOD.high, BLOOD.low, BLOOD.high])
+    epidermis = tissue.epidermis_absorption(melanin, share, WAVELENGTHS)
+    dermis = tissue.dermis_absorption(blood, share, WAVELENGTHS)
     ones = np.ones(len(WAVELENGTHS))
     low = [epidermis.min(0) ** 0.25, dermis.min(0) ** 0.25, np.log(THICKNESS.low) * ones]
     high = [epidermis.max(0) ** 0.25, dermis.max(0) ** 0.25, np.log(THICKNESS.high) * ones]
@@ -118,9 +117,13 @@ def load(file: str | IO[bytes]) -> SpectralTable:
         return _finish(tissue, stored["nodes"].astype(np.float64))
 
 
-@lru_cache(maxsize=4)
 def spectral_table(tissue: Tissue = ALIAGA2022) -> SpectralTable:
     """The table of `tissue`: the one that ships where there is one, else built now (seconds)."""
+    return _spectral_table(tissue)
+
+
+@lru_cache(maxsize=4)
+def _spectral_table(tissue: Tissue) -> SpectralTable:
     shipped = resources.files("cutis.data").joinpath("albedo", f"{tissue.name}.npz")
     if shipped.is_file():
         with shipped.open("rb") as file:
@@ -143,7 +146,7 @@ def _chebyshev_values(x: NDArray[np.float64], count: int) -> NDArray[np.float64]
     at_node = np.abs(gap) < 1e-14
     matrix = sign / np.where(at_node, 1.0, gap)
     matrix /= matrix.sum(axis=1, keepdims=True)
-    return np.where(at_node.any(axis=1)[:, None], at_node, matrix)
+    return np.where(np.any(at_node, axis=1, keepdims=True), at_node, matrix)
 
 
 @lru_cache(maxsize=8)

@@ -18,7 +18,7 @@ SIXTH, TWO_THIRDS = np.float32(1 / 6), np.float32(2 / 3)
 
 
 @njit(inline="always", fastmath=True)
-def _weights(f: Any) -> Any:
+def cubic_weights(f: Any) -> Any:
     """The four cubic B-spline weights at fraction f of a cell."""
     g = ONE - f
     return (
@@ -31,7 +31,7 @@ def _weights(f: Any) -> Any:
 
 @njit(inline="always", fastmath=True)
 def _slopes(f: Any) -> Any:
-    """Derivatives of `_weights` by f."""
+    """Derivatives of `cubic_weights` by f."""
     g, three_halves, two = ONE - f, np.float32(1.5), np.float32(2)
     return (
         -HALF * g * g,
@@ -42,7 +42,7 @@ def _slopes(f: Any) -> Any:
 
 
 @njit(inline="always", fastmath=True)
-def _cell(x: Any, low: Any, scale: Any, count: Any) -> Any:
+def locate_cell(x: Any, low: Any, scale: Any, count: Any) -> Any:
     """Index of the cell that x falls in and the fraction of the way through it."""
     cells = count - 3
     p = min(max((x - low) * scale, np.float32(0)), np.float32(cells))
@@ -76,9 +76,9 @@ def _mixtures(x: Any, spectra: Any, b: Any) -> Any:
 def _albedo(x: Any, b: Any, k: Any, wt: Any, spectra: Any, table: Any, low: Any, scale: Any) -> Any:
     """Albedo at band b of the skin x (5,), thickness already located as (k, wt)."""
     _, _, epidermis, dermis = _mixtures(x, spectra, b)
-    i, fe = _cell(np.sqrt(np.sqrt(epidermis)), low[b, 0], scale[b, 0], table.shape[1])
-    j, fd = _cell(np.sqrt(np.sqrt(dermis)), low[b, 1], scale[b, 1], table.shape[2])
-    return _sum(table[b], i, j, k, _weights(fe), _weights(fd), wt)
+    i, fe = locate_cell(np.sqrt(np.sqrt(epidermis)), low[b, 0], scale[b, 0], table.shape[1])
+    j, fd = locate_cell(np.sqrt(np.sqrt(dermis)), low[b, 1], scale[b, 1], table.shape[2])
+    return _sum(table[b], i, j, k, cubic_weights(fe), cubic_weights(fd), wt)
 
 
 @njit(parallel=True, fastmath=True, cache=True)
@@ -90,8 +90,8 @@ def reflectance_kernel(
     for block in prange((n + BLOCK - 1) // BLOCK):
         for row in range(block * BLOCK, min(n, (block + 1) * BLOCK)):
             x = skins[row]
-            k, ft = _cell(np.log(x[2]), low[0, 2], scale[0, 2], table.shape[3])
-            wt = _weights(ft)
+            k, ft = locate_cell(np.log(x[2]), low[0, 2], scale[0, 2], table.shape[3])
+            wt = cubic_weights(ft)
             for b in range(table.shape[0]):
                 out[row, b] = _albedo(x, b, k, wt, spectra, table, low, scale)
 
@@ -105,8 +105,8 @@ def rgb_kernel(
     for block in prange((n + BLOCK - 1) // BLOCK):
         for row in range(block * BLOCK, min(n, (block + 1) * BLOCK)):
             x = skins[row]
-            k, ft = _cell(np.log(x[2]), low[0, 2], scale[0, 2], table.shape[3])
-            wt = _weights(ft)
+            k, ft = locate_cell(np.log(x[2]), low[0, 2], scale[0, 2], table.shape[3])
+            wt = cubic_weights(ft)
             red, green, blue = np.float32(0), np.float32(0), np.float32(0)
             for b in range(table.shape[0]):
                 albedo = _albedo(x, b, k, wt, spectra, table, low, scale)
@@ -118,42 +118,47 @@ def rgb_kernel(
             out[row, 2] = blue
 
 
+@njit(fastmath=True, cache=True)
+def rgb_and_slope(
+    x: Any, spectra: Any, table: Any, low: Any, scale: Any, to_rgb: Any, rgb: Any, slope: Any
+) -> None:
+    """Fills rgb (3,) and slope (3, 5) = ∂RGB/∂parameter, per unit of each, of one skin x (5,)."""
+    quarter = np.float32(0.25)
+    k, ft = locate_cell(np.log(x[2]), low[0, 2], scale[0, 2], table.shape[3])
+    wt, dwt = cubic_weights(ft), _slopes(ft)
+    rgb[:] = 0
+    slope[:] = 0
+    for b in range(table.shape[0]):
+        pigment, blood, epidermis, dermis = _mixtures(x, spectra, b)
+        re, rd = np.sqrt(np.sqrt(epidermis)), np.sqrt(np.sqrt(dermis))
+        i, fe = locate_cell(re, low[b, 0], scale[b, 0], table.shape[1])
+        j, fd = locate_cell(rd, low[b, 1], scale[b, 1], table.shape[2])
+        we, wd, c = cubic_weights(fe), cubic_weights(fd), table[b]
+        albedo = _sum(c, i, j, k, we, wd, wt)
+        # d μ^¼ / dμ = μ^¼ / 4μ; d log t / dt = 1/t
+        by_e = _sum(c, i, j, k, _slopes(fe), wd, wt) * scale[b, 0] * quarter * re / epidermis
+        by_d = _sum(c, i, j, k, we, _slopes(fd), wt) * scale[b, 1] * quarter * rd / dermis
+        by_t = _sum(c, i, j, k, we, wd, dwt) * scale[b, 2] / x[2]
+        partials = (
+            by_e * (pigment - spectra[2, b]),
+            by_d * (blood - spectra[5, b]),
+            by_t,
+            by_e * x[0] * (spectra[0, b] - spectra[1, b]),
+            by_d * x[1] * (spectra[4, b] - spectra[3, b]),
+        )
+        for channel in range(3):
+            weight = to_rgb[b, channel]
+            rgb[channel] += albedo * weight
+            for p in range(5):
+                slope[channel, p] += partials[p] * weight
+
+
 @njit(parallel=True, fastmath=True, cache=True)
 def rgb_gradient_kernel(
     skins: Any, spectra: Any, table: Any, low: Any, scale: Any, to_rgb: Any, out: Any, slope: Any
 ) -> None:
-    """`rgb_kernel` that also fills slope (n, 3, 5) with ∂RGB/∂parameter, per unit of each."""
+    """`rgb_and_slope` of every skin: fills out (n, 3) and slope (n, 3, 5)."""
     n = skins.shape[0]
-    quarter = np.float32(0.25)
     for block in prange((n + BLOCK - 1) // BLOCK):
         for row in range(block * BLOCK, min(n, (block + 1) * BLOCK)):
-            x = skins[row]
-            k, ft = _cell(np.log(x[2]), low[0, 2], scale[0, 2], table.shape[3])
-            wt, dwt = _weights(ft), _slopes(ft)
-            out[row] = 0
-            slope[row] = 0
-            for b in range(table.shape[0]):
-                pigment, blood, epidermis, dermis = _mixtures(x, spectra, b)
-                re, rd = np.sqrt(np.sqrt(epidermis)), np.sqrt(np.sqrt(dermis))
-                i, fe = _cell(re, low[b, 0], scale[b, 0], table.shape[1])
-                j, fd = _cell(rd, low[b, 1], scale[b, 1], table.shape[2])
-                we, wd, c = _weights(fe), _weights(fd), table[b]
-                albedo = _sum(c, i, j, k, we, wd, wt)
-                # d μ^¼ / dμ = μ^¼ / 4μ; d log t / dt = 1/t
-                by_e = (
-                    _sum(c, i, j, k, _slopes(fe), wd, wt) * scale[b, 0] * quarter * re / epidermis
-                )
-                by_d = _sum(c, i, j, k, we, _slopes(fd), wt) * scale[b, 1] * quarter * rd / dermis
-                by_t = _sum(c, i, j, k, we, wd, dwt) * scale[b, 2] / x[2]
-                partials = (
-                    by_e * (pigment - spectra[2, b]),
-                    by_d * (blood - spectra[5, b]),
-                    by_t,
-                    by_e * x[0] * (spectra[0, b] - spectra[1, b]),
-                    by_d * x[1] * (spectra[4, b] - spectra[3, b]),
-                )
-                for channel in range(3):
-                    weight = to_rgb[b, channel]
-                    out[row, channel] += albedo * weight
-                    for p in range(5):
-                        slope[row, channel, p] += partials[p] * weight
+            rgb_and_slope(skins[row], spectra, table, low, scale, to_rgb, out[row], slope[row])

@@ -1,1 +1,1 @@
-"""Being written."""
+"""Ways in: the command line."""

@@ -8,6 +8,8 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from cutis.colour.spectra import XYZ_TO_SRGB
+
 BAND = 1 << 18
 """Texels worked on at a time, so that memory does not grow with the image."""
 D65_WHITE = (0.3127, 0.3290)
@@ -20,9 +22,9 @@ def _bands(count: int) -> Iterator[slice]:
 
 def lab(rgb: ArrayLike) -> NDArray[np.float32]:
     """(..., 3) linear sRGB → (..., 3) CIELAB under D65 (L* 0–100, a*, b*)."""
-    from colour import RGB_COLOURSPACES, XYZ_to_Lab
+    from colour import XYZ_to_Lab
 
-    matrix = RGB_COLOURSPACES["sRGB"].matrix_RGB_to_XYZ
+    matrix = np.linalg.inv(XYZ_TO_SRGB)  # of the same RGB as spectra, so that greys stay neutral
     flat = np.asarray(rgb).reshape(-1, 3)
     result = np.empty(flat.shape, dtype=np.float32)
     for band in _bands(len(flat)):

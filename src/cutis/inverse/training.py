@@ -1,7 +1,8 @@
 """Training of encoder and decoder with PyTorch (extra `train`).
 
-The recipe of the paper is `RECIPES["aliaga2022"]`: parameter L2 in network coordinates, albedo L1
-of the decoder, L1 of the cycle encoder → decoder, Adam. Every epoch is a function of the seed and
+The recipe of the paper is `RECIPES["aliaga2022"]`: squared L2 norm of the error of the five
+network coordinates, L1 of the decoder's albedo and of the cycle encoder → decoder (means over the
+three channels), all averaged over the batch, and Adam. Every epoch is a function of the seed and
 its number, and checkpoints hold the optimiser, so a run that was killed goes on as if it had not
 been.
 """
@@ -169,7 +170,7 @@ def _losses(
     decoded = networks.decode(torch.cat([u, estimate]))
     albedo, cycle = decoded[: len(u)], decoded[len(u) :]
     return (
-        ((estimate - u) ** 2).mean(),
+        ((estimate - u) ** 2).sum(dim=1).mean(),
         (albedo - rgb).abs().mean(),
         (cycle - rgb).abs().mean(),
     )

@@ -34,7 +34,8 @@ class Parameter:
     def from_coordinate(self, coordinate: ArrayLike) -> NDArray[np.floating]:
         """Coordinate u ∈ [0, 1] → parameter in its unit; any shape, clamped to the range."""
         low, high = self.low ** (1 / self.root), self.high ** (1 / self.root)
-        value = (low + np.asarray(coordinate) * (high - low)) ** self.root
+        u = np.clip(coordinate, 0, 1)  # before an even power, which would hide a negative root
+        value = (low + u * (high - low)) ** self.root
         return np.clip(value, self.low, self.high)
 
     def check(self, value: float) -> float:

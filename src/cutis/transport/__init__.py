@@ -6,6 +6,14 @@ from cutis.transport.discrete_ordinates import (
     stack_balance,
     two_layer_albedo,
 )
+from cutis.transport.doubling import adding_doubling
 from cutis.transport.fresnel import fresnel_reflectance
 
-__all__ = ["Balance", "Layer", "fresnel_reflectance", "stack_balance", "two_layer_albedo"]
+__all__ = [
+    "Balance",
+    "Layer",
+    "adding_doubling",
+    "fresnel_reflectance",
+    "stack_balance",
+    "two_layer_albedo",
+]

@@ -6,9 +6,9 @@ d = l⁺ − l⁻. In a homogeneous layer (depth x, cm; coefficients in cm⁻¹)
     s' = −A d,   d' = −B s,   A = M^−½ (μt − μs (P − Q)) M^−½,   B = M^−½ (μt − μs (P + Q)) M^−½,
 
 with M = diag(μ) and P, Q the kernels into the same and the opposite hemisphere, all symmetric.
-With A = C Cᵀ, B = L Lᵀ and the singular values Lᵀ C = U diag(k) Vᵀ the layer falls apart into N transmission lines
-σ' = −y, y' = −k² σ, where s = G σ, y = Gᵀ d, G = C V. Whatever lies below a depth acts on what is
-above through one symmetric *admittance* Z there, d = Z s:
+With A = C Cᵀ, B = L Lᵀ and the singular values Lᵀ C = U diag(k) Vᵀ the layer falls apart into N
+transmission lines σ' = −y, y' = −k² σ, where s = G σ, y = Gᵀ d, G = C V. Whatever lies below a
+depth acts on what is above through one symmetric *admittance* Z there, d = Z s:
 
     half space      Zσ = diag(k)
     layer, depth t  Zσ = k coth kt − (k / sinh kt) (Zσ,below + k coth kt)^−1 (k / sinh kt)
@@ -28,7 +28,7 @@ from numpy.typing import ArrayLike, NDArray
 from cutis.errors import CutisError
 from cutis.transport.fresnel import fresnel_reflectance
 from cutis.transport.phase import henyey_greenstein
-from cutis.transport.quadrature import Directions, directions
+from cutis.transport.quadrature import Directions, beam_cosine, directions
 
 Array = NDArray[np.float64]
 
@@ -56,16 +56,20 @@ class Balance:
     absorbed: Array
 
 
-def _transposed(a: Array) -> Array:
+def _transposed(a: NDArray[np.floating]) -> Array:
     return np.swapaxes(a, -1, -2)
+
+
+def _solve(a: Array, b: Array) -> Array:
+    return np.asarray(np.linalg.solve(a, b), dtype=np.float64)
 
 
 def modes(
     nodes: Directions, absorption: ArrayLike, scattering: float, g: float
 ) -> tuple[Array, Array, Array]:
     """Rates k (..., N) in cm⁻¹, G and G^−T (..., N, N) for absorptions (...) in cm⁻¹."""
-    mu_a = np.maximum(np.asarray(absorption, dtype=np.float64), 1e-14 * scattering)
-    mu_a = mu_a[..., None, None]  # at least rounding, so that B has a Cholesky factor
+    given, least = np.asarray(absorption, dtype=np.float64), 1e-14 * scattering
+    mu_a = np.maximum(given, least)[..., None, None]  # so that B has a Cholesky factor
     same, opposite = henyey_greenstein(nodes, g)
     unit, inverse = np.eye(len(nodes.cosine)), 1.0 / np.sqrt(nodes.cosine)
     metric = inverse[:, None] * inverse
@@ -74,8 +78,9 @@ def modes(
     chol = np.linalg.cholesky(odd)
     # k as singular values of Lᵀ C, B = L Lᵀ: an eigenvalue k² would lose half the digits of small k
     _, k, rows = np.linalg.svd(_transposed(np.linalg.cholesky(even)) @ chol)
+    k[..., -1] = np.where(given < least, 0.0, k[..., -1])  # uniform radiance does not decay then
     vectors = _transposed(rows)
-    return k, chol @ vectors, np.linalg.solve(_transposed(chol), vectors)
+    return k, chol @ vectors, _solve(_transposed(chol), vectors)
 
 
 def _half_space(k: Array, dual: Array) -> Array:
@@ -96,6 +101,20 @@ def _hyperbolic(k: Array, depth: ArrayLike) -> tuple[Array, Array]:
     return coth / t, csch / t
 
 
+def _cover(below: Array, k: Array, depth: float) -> tuple[Array, Array]:
+    """A layer upon a Zσ (..., N, N): the Zσ above it, and σ at its bottom per σ at its top."""
+    coth, csch = _hyperbolic(k, depth)
+    unit = np.eye(len(k))
+    if csch.max() < np.abs(below).max():
+        through = _solve(below + coth * unit, csch * unit)
+        return coth * unit - csch[:, None] * through, through
+    # The same for a thin layer, where that is a difference of numbers as large as 1/t.
+    half = k * np.tanh(0.5 * k * depth) * unit
+    inside = below + half
+    lost = _solve(inside + csch * unit, inside)
+    return half + inside - inside @ lost, unit - lost
+
+
 def stack_balance(
     layers: Sequence[Layer],
     *,
@@ -110,28 +129,28 @@ def stack_balance(
     of a collimated beam. `refractive_index` is that of every layer, air (1) around; light meets
     the Fresnel boundary on its way out. To refer to light that falls on the surface from outside,
     multiply by its transmittance and add its reflectance (`fresnel_reflectance`).
-    Only the last layer may be a half space. `count` nodes per hemisphere.
+    Only the last layer may be a half space. `count` nodes per hemisphere. Raises CutisError for
+    layers that are not physical.
     """
     check_layers(layers)
-    beam = None if incidence == "lambertian" else float(incidence)
+    beam = beam_cosine(incidence)
     nodes = directions(count, dimension, refractive_index, beam)
     flux = nodes.flux
     fresnel = fresnel_reflectance(nodes.cosine, 1.0 / refractive_index)
     outside = (1.0 - fresnel) / (1.0 + fresnel)
 
     admittance = np.diag(outside)  # of what lies below the layer in hand
-    down: list[tuple[Array, Array, Array, Array | None]] = []  # k, G, G^−T, σ_top → σ_bottom
+    down: list[tuple[Array, Array, Array, Array, Array]] = []  # k, G, G^−T, σ, y below per σ
     for layer in reversed(layers):
         k, g, dual = modes(nodes, layer.absorption, layer.scattering, layer.anisotropy)
         if np.isinf(layer.depth):
             admittance = _half_space(k, dual)
-            down.append((k, g, dual, None))
+            down.append((k, g, dual, np.zeros_like(g), np.zeros_like(g)))
             continue
-        coth, csch = _hyperbolic(k, layer.depth)
-        through = np.linalg.solve(g.T @ admittance @ g + np.diag(coth), np.diag(csch))
-        admittance = dual @ (np.diag(coth) - csch[:, None] * through) @ dual.T
-        admittance = (admittance + admittance.T) / 2
-        down.append((k, g, dual, through))
+        below = g.T @ admittance @ g
+        above, through = _cover(below, k, layer.depth)
+        admittance = dual @ ((above + above.T) / 2) @ dual.T
+        down.append((k, g, dual, through, below @ through))
 
     source = flux / (flux @ flux) if beam is None else np.eye(len(flux))[-1] / flux[-1]
     s = np.linalg.solve(np.diag(outside) + admittance, 2.0 * source / (1.0 + fresnel))
@@ -140,17 +159,14 @@ def stack_balance(
 
     absorbed = []
     d = admittance @ s
-    for layer, (k, g, dual, through) in zip(layers, reversed(down), strict=True):
+    for layer, (k, g, dual, through, flow) in zip(layers, reversed(down), strict=True):
         sigma, y = dual.T @ s, g.T @ d
-        if through is None:
-            sigma_below = y_below = np.zeros_like(k)
-        else:
-            coth, csch = _hyperbolic(k, layer.depth)
-            sigma_below = through @ sigma
-            y_below = csch * sigma - coth * sigma_below
+        sigma_below, y_below = through @ sigma, flow @ sigma
         # absorbed = μa Σ √(w/μ) ∫ s dx, and k² ∫ σ dx = y − y_below from d' = −B s
-        column = g @ ((y - y_below) / (k * k))
-        absorbed.append(layer.absorption * (np.sqrt(nodes.weight / nodes.cosine) @ column))
+        decaying = k > 0  # all, unless nothing absorbs
+        column = g[:, decaying] @ ((y - y_below)[decaying] / k[decaying] ** 2)
+        share = layer.absorption * (np.sqrt(nodes.weight / nodes.cosine) @ column)
+        absorbed.append(share if decaying.all() else 0.0)
         s, d = g @ sigma_below, dual @ y_below
     transmitted = 0.0 if np.isinf(layers[-1].depth) else float(flux @ d)
     return Balance(float(reflected), transmitted, np.array(absorbed))
@@ -174,27 +190,29 @@ def two_layer_albedo(
     epidermis in µm; one scattering coefficient (cm⁻¹) and anisotropy for both layers, as at one
     wavelength. Light starts inside, Lambertian or as a beam at cosine `incidence`;
     `refractive_index` 1 is the index-matched boundary. Same method as `stack_balance`, batched.
+    Raises CutisError for coefficients that are not physical.
     """
-    beam = None if incidence == "lambertian" else float(incidence)
+    epidermis, dermis, microns = (
+        np.atleast_1d(np.asarray(values, dtype=np.float64))
+        for values in (epidermis_absorption, dermis_absorption, thickness)
+    )
+    _check_two_layers(epidermis, dermis, microns, scattering, anisotropy)
+    beam = beam_cosine(incidence)
     nodes = directions(count, dimension, refractive_index, beam)
     flux = nodes.flux
     fresnel = fresnel_reflectance(nodes.cosine, 1.0 / refractive_index)
     source = flux / (flux @ flux) if beam is None else np.eye(len(flux))[-1] / flux[-1]
 
-    k, _, dual = modes(nodes, np.atleast_1d(dermis_absorption), scattering, anisotropy)
+    k, _, dual = modes(nodes, dermis, scattering, anisotropy)
     below = _half_space(k, dual)
-    rates, mixing, _ = modes(nodes, np.atleast_1d(epidermis_absorption), scattering, anisotropy)
-    depths = np.atleast_1d(np.asarray(thickness, dtype=np.float64)) * 1e-4
-    unit = np.eye(len(flux))
-    result = np.empty((len(rates), len(below), len(depths)))
+    rates, mixing, _ = modes(nodes, epidermis, scattering, anisotropy)
+    result = np.empty((len(rates), len(below), len(microns)))
     for e, (k, g) in enumerate(zip(rates, mixing, strict=True)):
         seen = g.T @ below @ g  # (D, N, N), the dermis in the modes of the epidermis
         boundary = (g.T * ((1.0 - fresnel) / (1.0 + fresnel))) @ g
         drive = g.T @ (2.0 * source / (1.0 + fresnel))
-        for i, depth in enumerate(depths):
-            coth, csch = _hyperbolic(k, depth)
-            through = np.linalg.solve(seen + coth * unit, csch * unit)
-            whole = boundary + coth * unit - csch[:, None] * through
+        for i, depth in enumerate(microns * 1e-4):
+            whole = boundary + _cover(seen, k, depth)[0]
             s = np.linalg.solve(whole, np.broadcast_to(drive[:, None], (*whole.shape[:-1], 1)))
             up = (g @ s)[..., 0] - source
             result[e, :, i] = up @ (flux * (1.0 - fresnel) / (1.0 + fresnel))
@@ -216,3 +234,20 @@ def check_layers(layers: Sequence[Layer]) -> None:
             raise CutisError(f"layer {number}: depth must be positive, infinite in the last only")
     if not layers:
         raise CutisError("a stack needs at least one layer")
+
+
+def _check_two_layers(
+    epidermis: Array, dermis: Array, thickness: Array, scattering: float, anisotropy: float
+) -> None:
+    """The same for `two_layer_albedo`; absorptions and thicknesses are (n,)."""
+    if not (np.isfinite(scattering) and scattering >= 0):
+        raise CutisError(f"scattering = {scattering}: it must be finite and not negative")
+    if not -1 < anisotropy < 1:
+        raise CutisError(f"anisotropy = {anisotropy}: it must lie inside (-1, 1)")
+    for name, values in (("epidermis", epidermis), ("dermis", dermis)):
+        if values.ndim != 1 or not np.all(np.isfinite(values)) or np.any(values < 0):
+            raise CutisError(f"{name}_absorption must be a list of finite numbers, none negative")
+        if scattering == 0 and np.any(values == 0):
+            raise CutisError(f"{name}_absorption and scattering must not both be zero")
+    if thickness.ndim != 1 or not np.all(np.isfinite(thickness)) or np.any(thickness <= 0):
+        raise CutisError("thickness must be a list of finite numbers of µm, all above zero")

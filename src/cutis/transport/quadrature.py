@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from cutis.errors import CutisError
+
 
 @dataclass(frozen=True)
 class Directions:
@@ -44,6 +46,7 @@ def directions(
     collimated beam can be let in. Nodes in θ crowd towards grazing, where radiance varies
     fastest, so the error falls spectrally (docs/transport.md).
     """
+    check_medium(count, dimension, refractive_index)
     if refractive_index > 1.0:
         outside, outside_weight = _gauss(count // 2, 0.0, np.pi / 2)
         escaping = np.arcsin(np.sin(outside) / refractive_index)
@@ -66,3 +69,25 @@ def directions(
 def _gauss(count: int, low: float, high: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     nodes, weights = np.polynomial.legendre.leggauss(count)
     return low + (nodes + 1) * (high - low) / 2, weights * (high - low) / 2
+
+
+def check_medium(count: int, dimension: int, refractive_index: float) -> None:
+    """Raises CutisError unless directions can be made of these."""
+    if dimension not in (2, 3):
+        raise CutisError(f"dimension = {dimension}: it must be 2 (flatland) or 3")
+    if not (np.isfinite(refractive_index) and refractive_index > 0):
+        raise CutisError(f"refractive_index = {refractive_index}: it must be a positive number")
+    if count < 2:
+        raise CutisError(f"count = {count}: at least 2 directions per hemisphere are needed")
+
+
+def beam_cosine(incidence: float | str) -> float | None:
+    """Cosine in (0, 1] of a beam, None for "lambertian"; raises CutisError for anything else."""
+    if incidence == "lambertian":
+        return None
+    if isinstance(incidence, str) or not 0 < incidence <= 1:
+        raise CutisError(
+            f"incidence = {incidence!r}: it must be 'lambertian' or the cosine of a beam, "
+            "above 0 and at most 1"
+        )
+    return float(incidence)

@@ -1,0 +1,44 @@
+"""What commands say: progress with time left, tables, one clear line for errors."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+out = Console(highlight=False)
+err = Console(stderr=True, highlight=False)
+
+
+class Steps:
+    """A progress bar of a known number of steps, each announced by name."""
+
+    def __init__(self, progress: Progress, total: int) -> None:
+        self._progress = progress
+        self._task = progress.add_task("", total=total)
+        self._begun = False
+
+    def step(self, name: str) -> None:
+        """Ends the step before and names the one that begins."""
+        if self._begun:
+            self._progress.advance(self._task)
+        self._begun = True
+        self._progress.update(self._task, description=name)
+
+    def at(self, done: int, total: int, name: str) -> None:
+        """Sets the whole bar: `done` of `total`."""
+        self._progress.update(self._task, completed=done, total=total, description=name)
+
+
+@contextmanager
+def steps(total: int, quiet: bool) -> Iterator[Steps]:
+    """A bar on stderr that goes away when done; silent when `quiet`."""
+    columns = (
+        TextColumn("{task.description:<24}"),
+        BarColumn(),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=err, transient=True, disable=quiet) as progress:
+        yield Steps(progress, total)

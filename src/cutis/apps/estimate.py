@@ -1,0 +1,121 @@
+"""`cutis estimate`: a capture in, maps, model albedo, previews and report out."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from cutis.apps import options
+
+if TYPE_CHECKING:
+    from cutis.maps import SkinMaps
+    from cutis.textures import Texture
+
+
+def estimate(
+    face: Annotated[Path, typer.Argument(help="Albedo texture: PNG, JPEG, TIFF or EXR.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder for the results.")] = Path(
+        "."
+    ),
+    mask: options.Mask = None,
+    white: options.White = "none",
+    exposure: options.Exposure = "none",
+    model: options.ModelName = "default",
+    encoding: options.Encoding = "auto",
+    half: Annotated[bool, typer.Option(help="Store the maps as half instead of float.")] = False,
+    quiet: options.Quiet = False,
+) -> None:
+    """Estimate skin maps of an albedo texture.
+
+    Writes NAME.skin.exr (the maps), NAME.model.exr (what the model alone gives), NAME.report.json
+    and previews NAME.<map>.png.
+
+    Example: cutis estimate face.png --mask mask.png --white auto -o out/
+    """
+    from cutis.apps.console import steps
+
+    with steps(6, quiet) as progress:
+        skin, _, results = run(
+            face, output, mask, white, exposure, model, encoding, half, progress.step
+        )
+    if not quiet:
+        say(results, skin)
+
+
+def run(
+    face: Path,
+    output: Path,
+    mask: Path | None,
+    white: str,
+    exposure: str,
+    model: str,
+    encoding: str,
+    half: bool,
+    step: Any,
+) -> tuple["SkinMaps", "Texture", dict[str, Any]]:
+    """The work of the command; `step(name)` is called as each of six steps begins."""
+    from dataclasses import replace
+
+    import cutis.maps as maps
+    from cutis.apps.previews import write_previews
+    from cutis.errors import CutisError
+    from cutis.textures import read_mask, read_texture, replacing, write_channels
+
+    white_value, exposure_value = options.white_gains(white), options.exposure_gain(exposure)
+    step("reading")
+    texture = read_texture(face, options.encoding_name(encoding))
+    cover = None if mask is None else read_mask(mask, texture.shape)
+    try:
+        output.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise CutisError(f"{output}: cannot make this folder ({error.strerror})") from error
+    stem = output / face.stem
+
+    step("estimating")
+    skin = maps.estimate(
+        texture, cover, white=white_value, exposure=exposure_value, model=model
+    )
+    note = maps.source_note(face, stem, texture.encoding)
+    skin = replace(skin, provenance=note)
+
+    step("writing maps")
+    skin.save(f"{stem}.skin.exr", "half" if half else "float")
+    step("writing the model's albedo")
+    albedo = skin.model_albedo
+    colour = {name: albedo[..., i] for i, name in enumerate("RGB")}
+    write_channels(f"{stem}.model.exr", colour, "half" if half else "float",
+                   {"colorspace": "lin_rec709"})  # fmt: skip
+    step("measuring")
+    results = maps.report(skin)
+    step("drawing previews")
+    write_previews(skin, stem)
+    with replacing(Path(f"{stem}.report.json")) as path:
+        path.write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
+    return skin, texture, results
+
+
+def say(results: dict[str, Any], skin: "SkinMaps") -> None:
+    """Prints what was found."""
+    from rich.table import Table
+
+    from cutis.apps.console import out
+
+    gains = ", ".join(f"{g:.3f}" for g in results["calibration"]["gains"])
+    out.print(f"gains {gains} ({results['calibration']['origin']}), model {results['model']}")
+    table = Table("map", "unit", "5 %", "median", "95 %", box=None)
+    for name, row in results["maps"].items():
+        table.add_row(name, row["unit"], *(f"{row[k]:.4g}" for k in ("p5", "median", "p95")))
+    out.print(table)
+    colour = results.get("colour")
+    if colour is None:
+        out.print("no texel inside the mask has the colour of skin; check mask and encoding")
+        return
+    out.print(
+        f"model against capture on {results['skin_texels']:,} skin texels: ΔE00 mean "
+        f"{colour['delta_e_mean']:.3f}, 95 % {colour['delta_e_p95']:.3f}, "
+        f"out of gamut {100 * colour['out_of_gamut']:.1f} %, ITA {colour['ita_median']:.0f}°"
+    )
+    out.print("RGB fixes melanin and blood; trust thickness, eumelanin and oxygenation less.")
+    if colour["out_of_gamut"] > 0.05 and skin.calibration.origin != "auto":
+        out.print("Many texels are out of gamut: try --white auto, or a tighter --mask.")

@@ -1,0 +1,32 @@
+"""`cutis info`: what is in a file of skin maps."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def info(maps: Annotated[Path, typer.Argument(help="Maps, NAME.skin.exr.")]) -> None:
+    """Say what is in a file of skin maps: model, calibration, edits, ranges.
+
+    Example: cutis info out/face.skin.exr
+    """
+    from rich.table import Table
+
+    from cutis.apps.console import out
+    from cutis.maps import load_maps
+
+    skin = load_maps(maps)
+    height, width = skin.shape
+    cover = float((skin.mask > 0).mean())
+    out.print(f"{maps.name}: {width} × {height} texels, {100 * cover:.1f} % skin")
+    gains = ", ".join(f"{g:.4f}" for g in skin.calibration.gains)
+    out.print(f"model {skin.model}; gains {gains} ({skin.calibration.origin})")
+    for key, value in skin.provenance.items():
+        out.print(f"{key.replace('_', ' ')}: {value}")
+    for change in skin.edits:
+        out.print(f"edit: {change}")
+    table = Table("map", "unit", "5 %", "median", "95 %", box=None)
+    for name, unit, low, median, high in skin.statistics():
+        table.add_row(name, unit, f"{low:.4g}", f"{median:.4g}", f"{high:.4g}")
+    out.print(table)

@@ -1,0 +1,59 @@
+"""Flags that mean the same in every command."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from cutis.errors import CutisError
+
+Mask = Annotated[
+    Path | None, typer.Option("--mask", help="Grey image, white where it applies, same size.")
+]
+White = Annotated[
+    str, typer.Option("--white", help="none, auto, or three gains for red,green,blue: 0.9,1,1.1.")
+]
+Exposure = Annotated[str, typer.Option("--exposure", help="none, auto, or one gain: 1.2.")]
+ModelName = Annotated[
+    str, typer.Option("--model", help="default, aliaga2022, or a .safetensors file of weights.")
+]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
+Encoding = Annotated[
+    str,
+    typer.Option("--encoding", help="auto (integers are sRGB, floats linear), srgb or linear."),
+]
+
+
+def white_gains(text: str) -> Literal["none", "auto"] | Sequence[float]:
+    """The value of --white."""
+    return "auto" if text == "auto" else "none" if text == "none" else _numbers(text, "white", 3)
+
+
+def exposure_gain(text: str) -> Literal["none", "auto"] | float:
+    """The value of --exposure."""
+    return (
+        "auto" if text == "auto" else "none" if text == "none" else _numbers(text, "exposure", 1)[0]
+    )
+
+
+def encoding_name(text: str) -> Literal["auto", "srgb", "linear"]:
+    """The value of --encoding."""
+    if text == "srgb":
+        return "srgb"
+    if text == "linear":
+        return "linear"
+    if text == "auto":
+        return "auto"
+    raise CutisError(f"--encoding must be auto, srgb or linear, not {text!r}")
+
+
+def _numbers(text: str, name: str, count: int) -> list[float]:
+    try:
+        values = [float(part) for part in text.split(",")]
+    except ValueError:
+        values = []
+    if len(values) != count:
+        form = "three gains like 0.9,1,1.1" if count == 3 else "one gain like 1.2"
+        raise CutisError(f"--{name} takes none, auto or {form}, not {text!r}")
+    return values

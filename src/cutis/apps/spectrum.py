@@ -1,0 +1,121 @@
+"""`cutis spectrum`: parameters in, reflectance spectrum out."""
+
+import csv
+import io
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+Value = float | None
+
+
+def spectrum(
+    skins: Annotated[
+        Path | None,
+        typer.Argument(help="CSV of skins, a column per parameter; missing ones are typical."),
+    ] = None,
+    melanin: Annotated[Value, typer.Option(help="Melanosome volume fraction, 0.001-1.")] = None,
+    blood: Annotated[Value, typer.Option(help="Blood volume fraction, 0.001-1.")] = None,
+    thickness: Annotated[Value, typer.Option(help="Epidermal thickness, 10-250 µm.")] = None,
+    eumelanin: Annotated[Value, typer.Option(help="Eumelanin share of melanin.")] = None,
+    oxygenation: Annotated[Value, typer.Option(help="Oxygenated share of haemoglobin.")] = None,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="CSV to write; a plot goes beside it.")
+    ] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
+) -> None:
+    """Reflectance of skin, 380-780 nm, from its parameters.
+
+    One skin gives the columns wavelength_nm,reflectance; a CSV of skins gives a row per skin, its
+    columns followed by one per wavelength. Without -o the CSV is printed.
+
+    Example: cutis spectrum --melanin 0.02 --blood 0.01 --thickness 80 -o skin.csv
+    """
+    from cutis.albedo import albedo_space
+    from cutis.errors import CutisError
+    from cutis.optics import NAMES, WAVELENGTHS, skin
+
+    flags = dict(zip(NAMES, (melanin, blood, thickness, eumelanin, oxygenation), strict=True))
+    given = {name: value for name, value in flags.items() if value is not None}
+    if skins is not None and given:
+        raise CutisError("give either a CSV of skins or parameter flags, not both")
+    if skins is None:
+        header = ["wavelength_nm", "reflectance"]
+        spectra = albedo_space().reflectance(skin(given))[None]
+        rows = [
+            [f"{lam:g}", f"{r:.6f}"] for lam, r in zip(WAVELENGTHS, spectra[0], strict=True)
+        ]
+    else:
+        columns, table, parameters = _read(skins)
+        header = [*columns, *(f"{lam:g}" for lam in WAVELENGTHS)]
+        spectra = albedo_space().reflectance(parameters)
+        rows = [
+            [*cells, *(f"{r:.6f}" for r in values)]
+            for cells, values in zip(table, spectra, strict=True)
+        ]
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerows([header, *rows])
+    if output is None:
+        typer.echo(text.getvalue(), nl=False)
+        return
+    from cutis.textures import replacing
+
+    with replacing(output) as partial:
+        partial.write_text(text.getvalue(), encoding="utf-8")
+    _plot(output.with_suffix(".png"), WAVELENGTHS, spectra)
+    if not quiet:
+        typer.echo(f"wrote {output} and {output.with_suffix('.png')}")
+
+
+def _read(path: Path) -> tuple[list[str], list[list[str]], "NDArray[np.float64]"]:
+    """Header, cells and (n, 5) parameters of a CSV; CutisError names the row that is wrong."""
+    import numpy as np
+
+    from cutis.errors import CutisError
+    from cutis.optics import NAMES, skin
+
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            lines = (line for line in file if line.strip() and not line.startswith("#"))
+            columns, *table = list(csv.reader(lines)) or [[]]
+    except FileNotFoundError:
+        raise CutisError(f"{path}: no such file") from None
+    except (UnicodeDecodeError, csv.Error):
+        raise CutisError(f"{path.name}: not a CSV file in UTF-8") from None
+    known = [i for i, name in enumerate(columns) if name in NAMES]
+    if not known or not table:
+        raise CutisError(
+            f"{path.name}: needs a header with some of {', '.join(NAMES)} and a row per skin"
+        )
+    parameters = np.empty((len(table), 5))
+    for number, cells in enumerate(table, 1):
+        try:
+            if len(cells) != len(columns):
+                raise CutisError(f"{len(cells)} cells under {len(columns)} columns")
+            parameters[number - 1] = skin({columns[i]: float(cells[i]) for i in known})
+        except ValueError as error:
+            raise CutisError(f"{path.name}, skin {number}: {error}") from None
+    return columns, table, parameters
+
+
+def _plot(path: Path, wavelengths: "NDArray[np.float64]", spectra: "NDArray[np.float32]") -> None:
+    from matplotlib.figure import Figure
+
+    from cutis.colour import encode_srgb, reflectance_to_rgb
+    from cutis.textures import replacing
+
+    figure = Figure(figsize=(7, 4.2), dpi=110, layout="constrained")
+    axes = figure.add_subplot()
+    for values in spectra[:200]:
+        colour = encode_srgb(reflectance_to_rgb(values, wavelengths)).clip(0, 1)
+        axes.plot(wavelengths, values, color=colour, linewidth=2)
+    axes.set(xlabel="wavelength [nm]", ylabel="reflectance", xlim=(380, 780), ylim=(0, None))
+    axes.set_facecolor("0.93")
+    with replacing(path) as partial:
+        figure.savefig(partial)

@@ -1,0 +1,90 @@
+"""`cutis train`: the weights and the baked inverse that ship, and your own."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from cutis.apps import options
+
+
+def train(
+    recipe: Annotated[
+        str, typer.Argument(help="aliaga2022, aliaga2022-cosine, smoke, or default (the baked one).")
+    ] = "aliaga2022",
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Folder of the run; runs/RECIPE if absent.")
+    ] = None,
+    epochs: Annotated[int | None, typer.Option(min=1, help="Instead of the recipe's.")] = None,
+    quiet: options.Quiet = False,
+) -> None:
+    """Train encoder and decoder, or bake the default inverse.
+
+    A run that was stopped goes on where its last checkpoint was when the same command is given
+    again. Writes weights.safetensors, metrics.json, curves.csv and curves.png; for `default`,
+    default.npz.
+
+    Example: cutis train aliaga2022 -o runs/aliaga2022
+    """
+    from cutis.apps.console import out, steps
+    from cutis.errors import CutisError
+
+    folder = output or Path("runs") / recipe
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise CutisError(f"{folder}: cannot make this folder ({error.strerror})") from error
+    if recipe == "default":
+        from cutis.inverse.baked import DEFAULT_PRIOR, bake, save_baked
+        from cutis.textures import replacing
+
+        with steps(1, quiet) as progress:
+            baked = bake(DEFAULT_PRIOR, lambda done, all_: progress.at(done, all_, "baking"))
+        with replacing(folder / "default.npz") as partial:
+            save_baked(baked, partial)
+        if not quiet:
+            out.print(f"wrote {folder / 'default.npz'}")
+        return
+
+    try:
+        from cutis.inverse.training import RECIPES, train as run
+    except ModuleNotFoundError as error:
+        raise CutisError(
+            f"training needs PyTorch ({error.name} is missing); pip install 'cutis[train]'"
+        ) from None
+    if recipe not in RECIPES:
+        raise CutisError(f"unknown recipe {recipe!r}; known are default, {', '.join(RECIPES)}")
+    from dataclasses import replace
+
+    chosen = RECIPES[recipe] if epochs is None else replace(RECIPES[recipe], epochs=epochs)
+    with steps(chosen.epochs, quiet) as progress:
+        metrics = run(
+            chosen, folder, lambda done, all_, loss: progress.at(done, all_, f"loss {loss:.5f}")
+        )
+    _plot(folder)
+    if not quiet:
+        out.print_json(data=metrics)
+        out.print(f"wrote {folder / 'weights.safetensors'}")
+
+
+def _plot(folder: Path) -> None:
+    import csv
+
+    from matplotlib.figure import Figure
+
+    from cutis.textures import replacing
+
+    with (folder / "curves.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    figure = Figure(figsize=(7, 4.2), dpi=110, layout="constrained")
+    axes = figure.add_subplot()
+    for name in list(rows[0])[1:]:
+        axes.semilogy(
+            [int(row["epoch"]) for row in rows],
+            [float(row[name]) for row in rows],
+            label=name.replace("_", " "),
+        )
+    axes.set(xlabel="epoch", ylabel="loss")
+    axes.legend()
+    with replacing(folder / "curves.png") as partial:
+        figure.savefig(partial)

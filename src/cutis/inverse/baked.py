@@ -1,0 +1,128 @@
+"""The most probable skin of every colour, baked into a three-dimensional table.
+
+Whatever computes it, an inverse from RGB is a function of three numbers. The table holds the fit
+of `fit.py` under a prior as uniform cubic B-splines (their values are twice differentiable, so
+maps are as smooth as the colours) over
+
+    a = G^¼,   b = R / (R + G),   c = B / (B + G),
+
+in which the gamut of skin is compact. Colours beyond the ends of an axis take the end's value.
+"""
+
+import json
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from cutis.albedo import albedo_space
+from cutis.inverse.fit import fit
+
+LOW = (0.22, 0.40, 0.06)
+"""Low ends of a, b, c."""
+HIGH = (1.0, 0.84, 0.56)
+"""High ends of a, b, c."""
+CELLS = (40, 32, 32)
+"""Cells of the splines over a, b, c."""
+
+
+@dataclass(frozen=True)
+class Prior:
+    """What skin is expected to be when colour leaves a choice.
+
+    `centre` are network coordinates, `precision` the (5, 5) inverse covariance of their logits,
+    `tolerance` the relative colour error worth one standard deviation (see `fit.py`).
+    """
+
+    centre: tuple[float, ...]
+    precision: tuple[tuple[float, ...], ...]
+    tolerance: float
+
+
+@dataclass(frozen=True)
+class Baked:
+    """B-spline coefficients (a, b, c, 5), float32, of coordinates u over the chart."""
+
+    coefficients: NDArray[np.float32]
+    prior: Prior
+
+    def __call__(self, colours: ArrayLike) -> NDArray[np.float32]:
+        """(n, 3) calibrated linear sRGB → (n, 5) network coordinates in [0, 1]."""
+        from cutis.inverse.baked_kernel import look_up
+
+        rgb = np.ascontiguousarray(colours, dtype=np.float32)
+        out = np.empty((len(rgb), 5), dtype=np.float32)
+        low = np.array(LOW, dtype=np.float32)
+        scale = (np.array(CELLS) / (np.array(HIGH) - np.array(LOW))).astype(np.float32)
+        look_up(rgb, self.coefficients, low, scale, out)
+        return out
+
+
+def chart_colours() -> NDArray[np.float32]:
+    """(nodes, 3) linear sRGB at the nodes of the chart, a slowest."""
+    axes = [np.linspace(low, high, n + 1) for low, high, n in zip(LOW, HIGH, CELLS, strict=True)]
+    a, b, c = np.meshgrid(*axes, indexing="ij")
+    green = a**4
+    rgb = np.stack([green * b / (1 - b), green, green * c / (1 - c)], axis=-1)
+    return rgb.reshape(-1, 3).astype(np.float32)
+
+
+def bake(prior: Prior, progress: Callable[[int, int], None] | None = None) -> Baked:
+    """Fits every node of the chart under `prior` (seconds); `progress(done, total)`."""
+    colours = chart_colours()
+    space = albedo_space()
+    nodes = np.empty((len(colours), 5), dtype=np.float32)
+    step = -(-len(colours) // 20)
+    for start in range(0, len(colours), step):
+        part = slice(start, start + step)
+        nodes[part] = fit(
+            space, colours[part], np.array(prior.centre), np.array(prior.precision), prior.tolerance
+        )
+        if progress:
+            progress(min(start + step, len(colours)), len(colours))
+    return Baked(_splines(nodes.reshape(*(n + 1 for n in CELLS), 5)), prior)
+
+
+def _splines(values: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Values at the nodes of each axis → coefficients with natural ends, one more at each end."""
+    coefficients = values.astype(np.float64)
+    for axis in range(3):
+        n = coefficients.shape[axis]
+        system = np.zeros((n + 2, n + 2))
+        rows = np.arange(n)
+        for shift, weight in ((0, 1 / 6), (1, 2 / 3), (2, 1 / 6)):
+            system[rows + 1, rows + shift] = weight
+        system[0, :3] = system[-1, -3:] = (1, -2, 1)  # no curvature at the ends
+        inverse = np.linalg.inv(system)[:, 1:-1]
+        coefficients = np.moveaxis(np.tensordot(inverse, coefficients, axes=(1, axis)), 0, axis)
+    return np.ascontiguousarray(coefficients, dtype=np.float32)
+
+
+def save_baked(baked: Baked, file: Path) -> None:
+    """Writes a baked inverse as .npz: coefficients in steps of 1/65535, prior as text."""
+    low, high = float(baked.coefficients.min()), float(baked.coefficients.max())
+    steps = np.round((baked.coefficients - low) / (high - low) * 65535).astype(np.uint16)
+    np.savez_compressed(
+        file, steps=steps, ends=np.array([low, high]), prior=np.array(json.dumps(asdict(baked.prior)))
+    )
+
+
+def load_baked(file: Path) -> Baked:
+    """Reads what `save_baked` wrote."""
+    with np.load(file, allow_pickle=False) as stored:
+        low, high = stored["ends"]
+        coefficients = (low + stored["steps"] / 65535 * (high - low)).astype(np.float32)
+        note = json.loads(str(stored["prior"]))
+    return Baked(
+        coefficients,
+        Prior(
+            tuple(note["centre"]), tuple(tuple(r) for r in note["precision"]), note["tolerance"]
+        ),
+    )
+DEFAULT_PRIOR = Prior(
+    centre=(0.406, 0.613, 0.502, 0.262, 0.741),
+    precision=tuple(tuple(float(x) for x in row) for row in np.diag([0.73, 1.2, 14.8, 8.4, 9.3])),
+    tolerance=0.0037,
+)

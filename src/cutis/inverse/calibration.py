@@ -1,0 +1,133 @@
+"""Exposure and white balance of a capture, as gains on linear sRGB.
+
+A capture carries the exposure and the colour cast of its lights. `auto` looks for the gains at
+which the model explains the masked skin, with a pull towards 1: it minimises
+
+    mean over a sample of texels of  r² / (r² + ρ²)  +  PULL · Σ (log gain)²,
+
+r being the relative colour error of the best skin. The first term counts texels out of the
+albedo space and saturates, so that clothes and hair inside the mask do not decide. Nothing pulls
+towards a skin tone. Gains are undone on output, so colours come back as they came.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from cutis.albedo import albedo_space
+from cutis.errors import CutisError
+from cutis.inverse.fit import fit
+
+SAMPLE = 1500
+"""Texels that gains are judged on."""
+SCALE = 0.02
+"""ρ, the relative colour error at which a texel counts half as out of the albedo space."""
+PULL = 0.3
+"""Weight of the pull of gains towards 1."""
+LIMITS = (0.1, 10.0)
+"""Gains outside are refused."""
+
+White = Literal["none", "auto"] | Sequence[float] | None
+Exposure = Literal["none", "auto"] | float | None
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """Gains (red, green, blue) that were applied to linear sRGB, and a sentence on their origin."""
+
+    gains: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    origin: str = "none"
+
+    def apply(self, rgb: ArrayLike) -> NDArray[np.float32]:
+        """(..., 3) linear sRGB as captured → calibrated."""
+        return np.asarray(rgb, dtype=np.float32) * np.array(self.gains, dtype=np.float32)
+
+    def undo(self, rgb: ArrayLike) -> NDArray[np.float32]:
+        """(..., 3) calibrated linear sRGB → as captured."""
+        return np.asarray(rgb, dtype=np.float32) / np.array(self.gains, dtype=np.float32)
+
+
+def calibrate(rgb: ArrayLike, white: White = None, exposure: Exposure = None) -> Calibration:
+    """Gains for masked texels `rgb` (n, 3) of linear sRGB.
+
+    `white` is "none", "auto" or three gains; `exposure` is "none", "auto" or one gain, which
+    multiplies those of `white`. `white="auto"` looks for three gains, exposure included;
+    `exposure="auto"` alone for one common gain.
+    """
+    fixed = np.ones(3)
+    if not (white is None or isinstance(white, str)):
+        fixed = fixed * _checked(white, 3, "white")
+    if not (exposure is None or isinstance(exposure, str)):
+        fixed = fixed * _checked([exposure], 1, "exposure")
+    for name, value in (("white", white), ("exposure", exposure)):
+        if isinstance(value, str) and value not in ("none", "auto"):
+            raise CutisError(f"--{name} must be none, auto or numbers, not {value!r}")
+    if white != "auto" and exposure != "auto":
+        gains = tuple(float(g) for g in fixed)
+        return Calibration(gains, "given" if np.any(fixed != 1) else "none")
+    if white == "auto":
+        found = _search(np.asarray(rgb) * fixed, np.eye(3))
+    else:
+        found = _search(np.asarray(rgb) * fixed, np.ones((1, 3)))
+    red, green, blue = (float(g) for g in fixed * found)
+    return Calibration((red, green, blue), "auto")
+
+
+def _checked(values: Sequence[float], count: int, name: str) -> NDArray[np.float64]:
+    gains = np.asarray(values, dtype=np.float64)
+    low, high = LIMITS
+    if gains.shape != (count,) or not np.all((gains >= low) & (gains <= high)):
+        numbers = "one number" if count == 1 else "three numbers (red,green,blue)"
+        raise CutisError(f"--{name} takes none, auto or {numbers} from {low:g} to {high:g}")
+    return gains
+
+
+def _search(rgb: NDArray[np.floating], directions: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The best gains (3,) of the form exp(x @ directions)."""
+    from scipy.optimize import minimize
+
+    bright = rgb[(rgb > 0.0).all(axis=1)]
+    if len(bright) < 10:
+        raise CutisError("too few texels with colour inside the mask to calibrate; check the mask")
+    picks = np.random.default_rng(0).choice(len(bright), min(SAMPLE, len(bright)), replace=False)
+    sample = bright[picks].astype(np.float32)
+    space = albedo_space()
+    start = np.array([0.35, 0.4, 0.4, 0.5, 0.5])
+
+    def cost(x: NDArray[np.float64]) -> float:
+        log_gains = x @ directions
+        colours = sample * np.exp(log_gains).astype(np.float32)
+        explained = space.rgb(_skins(fit(space, colours, start, np.eye(5), 3e-3, iterations=15)))
+        error = (explained - colours) / (colours.mean(axis=1, keepdims=True) + 0.01)
+        r2 = (error.astype(np.float64) ** 2).sum(axis=1)
+        return float(np.mean(r2 / (r2 + SCALE**2)) + PULL * np.sum(log_gains**2))
+
+    size = len(directions)
+    simplex = np.vstack([np.zeros(size), 0.15 * np.eye(size)])
+    best = min(
+        (
+            minimize(
+                cost,
+                simplex[0],
+                method="Nelder-Mead",
+                options={
+                    "initial_simplex": side * simplex,
+                    "xatol": 1e-3,
+                    "fatol": 1e-5,
+                    "maxfev": 120,
+                },
+            )
+            for side in (1.0, -1.0)
+        ),
+        key=lambda result: result.fun,
+    )
+    return np.exp(best.x @ directions)
+
+
+def _skins(coordinates: NDArray[np.float32]) -> NDArray[np.floating]:
+    from cutis.optics import from_coordinates
+
+    return from_coordinates(coordinates)

@@ -1,0 +1,139 @@
+"""Compiled least-squares fit of one skin per colour (see `fit.py`)."""
+
+from typing import Any
+
+import numpy as np
+from numba import njit, prange
+
+from cutis.albedo.spline import rgb_and_slope
+
+BLOCK = 64
+"""Colours that one task works on."""
+EDGE = np.float32(9.0)
+"""Bound on logits: 0.0001 from the ends of a range."""
+
+CONVERGED = np.float32(1e-4)
+"""Change of the cost, in squared standard deviations of the prior, that ends a fit."""
+
+
+@njit(fastmath=True, cache=True)
+def _evaluate(
+    z: Any, weight: Any, colour: Any, root_low: Any, root_span: Any, power: Any, model: Any,
+    x: Any, rgb: Any, slope: Any, residual: Any
+) -> None:  # fmt: skip
+    """Weighted residual (3,) and its slope (3, 5) by logits z (5,)."""
+    for p in range(5):
+        u = np.float32(1) / (np.float32(1) + np.exp(-z[p]))
+        root = root_low[p] + u * root_span[p]
+        x[p] = root ** power[p]
+    spectra, table, low, scale, to_rgb = model
+    rgb_and_slope(x, spectra, table, low, scale, to_rgb, rgb, slope)
+    for p in range(5):
+        u = np.float32(1) / (np.float32(1) + np.exp(-z[p]))
+        root = root_low[p] + u * root_span[p]
+        chain = power[p] * x[p] / root * root_span[p] * u * (np.float32(1) - u)
+        if power[p] == 1:
+            chain = root_span[p] * u * (np.float32(1) - u)
+        for c in range(3):
+            slope[c, p] *= chain * weight
+    for c in range(3):
+        residual[c] = (rgb[c] - colour[c]) * weight
+
+
+@njit(fastmath=True, cache=True)
+def _cost(z: Any, centre: Any, precision: Any, residual: Any) -> Any:
+    total = np.float32(0)
+    for c in range(3):
+        total += residual[c] * residual[c]
+    for p in range(5):
+        for q in range(5):
+            total += (z[p] - centre[p]) * precision[p, q] * (z[q] - centre[q])
+    return total
+
+
+@njit(fastmath=True, cache=True)
+def _solve(a: Any, g: Any, step: Any) -> None:
+    """step (5,) = −a⁻¹ g by Cholesky, in place; a (5, 5) symmetric positive definite."""
+    for j in range(5):
+        for k in range(j):
+            a[j, j] -= a[j, k] * a[j, k]
+        a[j, j] = np.sqrt(max(a[j, j], 1e-12))
+        for i in range(j + 1, 5):
+            for k in range(j):
+                a[i, j] -= a[i, k] * a[j, k]
+            a[i, j] /= a[j, j]
+    for i in range(5):
+        s = -g[i]
+        for k in range(i):
+            s -= a[i, k] * step[k]
+        step[i] = s / a[i, i]
+    for i in range(4, -1, -1):
+        s = step[i]
+        for k in range(i + 1, 5):
+            s -= a[k, i] * step[k]
+        step[i] = s / a[i, i]
+
+
+@njit(parallel=True, fastmath=True, cache=True)
+def fit_kernel(
+    colours: Any, centres: Any, weights: Any, precision: Any, iterations: Any,
+    root_low: Any, root_span: Any, power: Any, model: Any, out: Any
+) -> None:  # fmt: skip
+    """Fills out (n, 5) with logits that minimise |weight (RGB − colour)|² + prior, by
+    Levenberg–Marquardt from the prior's centres (n, 5)."""
+    n = colours.shape[0]
+    for block in prange((n + BLOCK - 1) // BLOCK):
+        _fit_block(
+            block, colours, centres, weights, precision, iterations,
+            root_low, root_span, power, model, out,
+        )  # fmt: skip
+
+
+@njit(fastmath=True, cache=True)
+def _fit_block(
+    block: Any, colours: Any, centres: Any, weights: Any, precision: Any, iterations: Any,
+    root_low: Any, root_span: Any, power: Any, model: Any, out: Any
+) -> None:  # fmt: skip
+    x, rgb, residual = np.empty(5, np.float32), np.empty(3, np.float32), np.empty(3, np.float32)
+    slope, trial_slope = np.empty((3, 5), np.float32), np.empty((3, 5), np.float32)
+    trial, trial_residual = np.empty(5, np.float32), np.empty(3, np.float32)
+    a, g, step = np.empty((5, 5)), np.empty(5), np.empty(5)
+    for row in range(block * BLOCK, min(colours.shape[0], (block + 1) * BLOCK)):
+        z, centre, colour, weight = out[row], centres[row], colours[row], weights[row]
+        z[:] = centre
+        damping = 1e-3
+        _evaluate(
+            z, weight, colour, root_low, root_span, power, model, x, rgb, slope, residual
+        )
+        cost = _cost(z, centre, precision, residual)
+        for _ in range(iterations):
+            for p in range(5):
+                g[p] = 0.0
+                for q in range(5):
+                    g[p] += precision[p, q] * (z[q] - centre[q])
+                    a[p, q] = precision[p, q]
+                    for c in range(3):
+                        a[p, q] += slope[c, p] * slope[c, q]
+                for c in range(3):
+                    g[p] += slope[c, p] * residual[c]
+                a[p, p] *= 1.0 + damping
+            _solve(a, g, step)
+            for p in range(5):
+                move = min(max(step[p], -2.0), 2.0)
+                trial[p] = min(max(z[p] + np.float32(move), -EDGE), EDGE)
+            _evaluate(
+                trial, weight, colour, root_low, root_span, power, model,
+                x, rgb, trial_slope, trial_residual,
+            )  # fmt: skip
+            trial_cost = _cost(trial, centre, precision, trial_residual)
+            gain = cost - trial_cost
+            if gain >= 0:
+                z[:] = trial
+                slope[:] = trial_slope
+                residual[:] = trial_residual
+                cost = trial_cost
+                damping *= 0.1
+            else:
+                damping = max(damping * 10.0, 1e-3)
+            if abs(gain) < CONVERGED:
+                break

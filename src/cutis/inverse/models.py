@@ -1,0 +1,84 @@
+"""Models by name: how a colour becomes a skin, and a skin a colour.
+
+`default` reads the baked most probable skin and decodes through the exact albedo space;
+`aliaga2022` is the paper's pair of networks, trained by `cutis train`.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from cutis.albedo import albedo_space
+from cutis.errors import CutisError
+from cutis.optics import from_coordinates, to_coordinates
+
+MODELS = ("default", "aliaga2022")
+"""Names that `load_model` knows; it also takes the path of a weights file."""
+BAND = 1 << 18
+"""Texels converted at a time."""
+
+
+@dataclass(frozen=True)
+class Model:
+    """An inverse and its forward model.
+
+    `to_coordinates` maps (n, 3) calibrated linear sRGB to (n, 5) network coordinates, `to_rgb`
+    maps (n, 5) parameters in their units to (n, 3) linear sRGB.
+    """
+
+    name: str
+    to_coordinates: Callable[[NDArray[np.float32]], NDArray[np.float32]]
+    to_rgb: Callable[[NDArray[np.float32]], NDArray[np.float32]]
+
+    def encode(self, rgb: ArrayLike) -> NDArray[np.float32]:
+        """(..., 3) calibrated linear sRGB → (..., 5) parameters in their units."""
+        return _in_bands(
+            lambda c: from_coordinates(self.to_coordinates(c)).astype(np.float32), rgb, 5
+        )
+
+    def decode(self, parameters: ArrayLike) -> NDArray[np.float32]:
+        """(..., 5) parameters in their units → (..., 3) linear sRGB under D65."""
+        return _in_bands(self.to_rgb, parameters, 3)
+
+
+def _in_bands(
+    function: Callable[[NDArray[np.float32]], NDArray[np.float32]], values: ArrayLike, size: int
+) -> NDArray[np.float32]:
+    array = np.asarray(values, dtype=np.float32)
+    flat = array.reshape(-1, array.shape[-1])
+    out = np.empty((len(flat), size), dtype=np.float32)
+    for start in range(0, len(flat), BAND):
+        out[start : start + BAND] = function(flat[start : start + BAND])
+    return out.reshape(*array.shape[:-1], size)
+
+
+@cache
+def load_model(name: str = "default") -> Model:
+    """The model called `name`, or of the weights file `name`; CutisError when there is none."""
+    weights = resources.files("cutis.data").joinpath("weights")
+    if name == "default":
+        from cutis.inverse.baked import load_baked
+
+        with resources.as_file(weights.joinpath("default.npz")) as file:
+            baked = load_baked(file)
+        return Model(name, baked, albedo_space().rgb)
+    if name in MODELS:
+        with resources.as_file(weights.joinpath(f"{name}.safetensors")) as file:
+            return _networks(name, file)
+    if name.endswith(".safetensors") and Path(name).is_file():
+        return _networks(name, Path(name))
+    raise CutisError(
+        f"unknown model {name!r}; choose {', '.join(MODELS)} or a .safetensors file of weights"
+    )
+
+
+def _networks(name: str, file: Path) -> Model:
+    from cutis.inverse.network import load_weights
+
+    networks = load_weights(file)
+    return Model(name, networks.encoder, lambda skins: networks.decoder(to_coordinates(skins)))

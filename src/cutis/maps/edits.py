@@ -1,0 +1,79 @@
+"""Edits of skin maps as values: multiply, offset, set, blend one parameter."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cutis.errors import CutisError
+from cutis.optics import parameter
+
+OPERATIONS: dict[str, Callable[[NDArray[np.float32], float], NDArray[np.float32]]] = {
+    "multiply": lambda values, amount: values * np.float32(amount),
+    "offset": lambda values, amount: values + np.float32(amount),
+    "set": lambda values, amount: np.full_like(values, amount),
+}
+
+
+@dataclass(frozen=True)
+class Edit:
+    """One change of one parameter: `operation` is multiply, offset or set.
+
+    `where` is "everywhere" or "patches", irregular patches over about a third of the skin
+    (vitiligo); a painted mask can narrow both. `amount` is in the parameter's unit for offset
+    and set.
+    """
+
+    parameter: str
+    operation: str
+    amount: float
+    where: str = "everywhere"
+
+    def __post_init__(self) -> None:
+        known = parameter(self.parameter)
+        if self.operation not in OPERATIONS:
+            raise CutisError(f"unknown operation {self.operation!r}; use {', '.join(OPERATIONS)}")
+        if not np.isfinite(self.amount) or (self.operation == "multiply" and self.amount < 0):
+            raise CutisError(f"cannot {self.operation} {self.parameter} by {self.amount:g}")
+        if self.operation == "set":
+            known.check(self.amount)
+
+    def __str__(self) -> str:
+        sign = {"multiply": f"x{self.amount:g}", "offset": f"{self.amount:+g}"}
+        text = f"{self.parameter} {sign.get(self.operation, f'{self.amount:g}')}"
+        return text if self.where == "everywhere" else f"{text} in {self.where}"
+
+    def __call__(
+        self, values: NDArray[np.float32], weight: NDArray[np.float32] | None = None
+    ) -> tuple[NDArray[np.float32], int]:
+        """Edited copy of a map and the number of its values that had to be clamped to range.
+
+        `weight` (same shape, 0–1) blends between the old value and the new one; where the result
+        equals the old value it is the old value, bit for bit.
+        """
+        known = parameter(self.parameter)
+        edited = OPERATIONS[self.operation](values, self.amount)
+        limited = np.clip(edited, np.float32(known.low), np.float32(known.high))
+        changes = np.ones(values.shape, bool) if weight is None else weight > 0
+        clamped = int(np.count_nonzero((limited != edited) & changes))
+        if weight is not None:
+            limited = np.where(changes, values + weight * (limited - values), values)
+        return limited.astype(np.float32), clamped
+
+
+def parse_edit(name: str, text: str) -> Edit:
+    """`x1.4` → multiply, `+0.1` and `-0.1` → offset, `0.02` → set; CutisError for anything else."""
+    text = text.strip()
+    operation, number = "set", text
+    if text[:1] in ("x", "X", "×", "*"):
+        operation, number = "multiply", text[1:]
+    elif text[:1] in ("+", "-"):
+        operation = "offset"
+    try:
+        amount = float(number)
+    except ValueError:
+        raise CutisError(
+            f"--{name} takes a value (0.02), a factor (x1.5) or an offset (+0.1), not {text!r}"
+        ) from None
+    return Edit(name, operation, amount)

@@ -1,0 +1,79 @@
+"""From a capture to its skin maps."""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from cutis.errors import CutisError
+from cutis.inverse.calibration import Exposure, White, calibrate
+from cutis.inverse.models import load_model
+from cutis.maps.skin_maps import SkinMaps
+from cutis.optics import NAMES
+from cutis.textures.texture import Texture, bands
+
+
+def estimate(
+    face: Texture | ArrayLike,
+    mask: ArrayLike | None = None,
+    *,
+    white: White = None,
+    exposure: Exposure = None,
+    model: str = "default",
+) -> SkinMaps:
+    """Skin maps of a texture or of an (H, W, 3) array of linear sRGB.
+
+    `mask` (H, W) in [0, 1] says where skin is; without one, wherever alpha is not 0. `white` and
+    `exposure` are gains, "auto" or "none" (`inverse.calibration`). Raises CutisError for arrays
+    of other shapes, NaN or infinite colours, and masks that are empty or of another size.
+    """
+    source = _linear(face)
+    cover = _cover(face, mask, source.shape[:2])
+    inverse = load_model(model)
+    calibration = calibrate(_sample(source, cover), white, exposure)
+    maps = {name: np.zeros(cover.shape, dtype=np.float32) for name in NAMES}
+    for rows in bands(cover.shape):
+        inside = cover[rows] > 0
+        skins = inverse.encode(calibration.apply(source[rows][inside]))
+        for i, name in enumerate(NAMES):
+            maps[name][rows][inside] = skins[:, i]
+    return SkinMaps(**maps, mask=cover, calibration=calibration, model=model, source=source)
+
+
+def _linear(face: Texture | ArrayLike) -> NDArray[np.float32]:
+    if isinstance(face, Texture):
+        return face.linear()
+    colours = np.asarray(face)
+    if colours.ndim != 3 or colours.shape[2] != 3 or colours.size == 0:
+        raise CutisError(f"an albedo must be (H, W, 3) linear sRGB, not {colours.shape}")
+    if colours.dtype.kind not in "f":
+        raise CutisError(
+            f"an albedo array must be floating-point linear sRGB, not {colours.dtype}; "
+            "decode it first, or give a file to cutis.read"
+        )
+    if not np.isfinite(colours).all():
+        raise CutisError("the albedo has NaN or infinite texels; repair them first")
+    return colours.astype(np.float32)
+
+
+def _cover(
+    face: Texture | ArrayLike, mask: ArrayLike | None, shape: tuple[int, ...]
+) -> NDArray[np.float32]:
+    if mask is None:
+        alpha = face.alpha() if isinstance(face, Texture) else None
+        cover = np.ones(shape, np.float32) if alpha is None else (alpha > 0).astype(np.float32)
+    else:
+        cover = np.asarray(mask, dtype=np.float32)
+    if cover.shape != shape:
+        raise CutisError(f"the mask is {cover.shape}, the albedo is {tuple(shape)}")
+    if not (np.isfinite(cover).all() and cover.min() >= 0 and cover.max() <= 1):
+        raise CutisError("the mask must hold values from 0 to 1")
+    if not (cover > 0).any():
+        raise CutisError("the mask is empty: nothing is marked as skin")
+    return cover
+
+
+def _sample(
+    source: NDArray[np.float32], cover: NDArray[np.float32], count: int = 200_000
+) -> NDArray[np.float32]:
+    """At most `count` colours that are surely inside the mask, evenly picked."""
+    inside = np.flatnonzero(cover >= 0.5 * cover.max())
+    return source.reshape(-1, 3)[inside[:: -(-len(inside) // count)]]

@@ -1,0 +1,213 @@
+"""Skin maps: what `estimate` returns, what people edit, what becomes albedo again."""
+
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from cutis.errors import CutisError
+from cutis.inverse.calibration import Calibration
+from cutis.inverse.models import load_model
+from cutis.maps.edits import Edit
+from cutis.maps.patches import patches
+from cutis.optics import NAMES, parameter
+from cutis.textures.texture import Texture, bands
+
+Map = NDArray[np.float32]
+
+
+@dataclass(frozen=True, eq=False)
+class SkinMaps:
+    """Five maps of what a skin is made of, float32 (H, W), in the units of `optics.PARAMETERS`.
+
+    `mask` (H, W) in [0, 1] says where they hold; maps are 0 where it is 0. `calibration` was
+    applied to the capture before the estimate, by the model called `model`. `source` is the
+    capture, linear sRGB (H, W, 3), or None when only the maps were loaded. `original` is the
+    estimate that this was edited from, None for an estimate itself; `edits` what was done since,
+    and `clamped` how many texels each edit pushed against the end of a range. `provenance` is
+    free text for the file header.
+    """
+
+    melanin: Map
+    blood: Map
+    thickness: Map
+    eumelanin: Map
+    oxygenation: Map
+    mask: Map
+    calibration: Calibration = Calibration()
+    model: str = "default"
+    source: Map | None = None
+    original: "SkinMaps | None" = None
+    edits: tuple[str, ...] = ()
+    clamped: tuple[int, ...] = ()
+    provenance: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for name in (*NAMES, "mask"):
+            if getattr(self, name).shape != self.melanin.shape:
+                raise CutisError(f"map {name} has another size than the others")
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Height and width in texels."""
+        return self.melanin.shape[0], self.melanin.shape[1]
+
+    def parameters(self, rows: slice | None = None) -> Map:
+        """(H, W, 5) parameters, or those of some rows."""
+        rows = slice(None) if rows is None else rows
+        return np.stack([getattr(self, name)[rows] for name in NAMES], axis=-1)
+
+    # editing --------------------------------------------------------------------------------
+
+    def multiply(self, *, where: ArrayLike | None = None, **factors: float) -> "SkinMaps":
+        """Multiplies maps by factors: `skin.multiply(melanin=1.4)`."""
+        return self.apply([Edit(k, "multiply", v) for k, v in factors.items()], where)
+
+    def offset(self, *, where: ArrayLike | None = None, **amounts: float) -> "SkinMaps":
+        """Adds amounts in the parameter's unit: `skin.offset(thickness=-20)`."""
+        return self.apply([Edit(k, "offset", v) for k, v in amounts.items()], where)
+
+    def replace(self, *, where: ArrayLike | None = None, **values: float) -> "SkinMaps":
+        """Sets maps to values: `skin.replace(eumelanin=0.001)`."""
+        return self.apply([Edit(k, "set", v) for k, v in values.items()], where)
+
+    def blend(self, amount: float, *, where: ArrayLike | None = None, **values: float) -> "SkinMaps":
+        """Moves maps part of the way, `amount` in [0, 1], towards values."""
+        return self.apply([Edit(k, "set", v) for k, v in values.items()], where, amount=amount)
+
+    def apply(
+        self,
+        edits: Edit | tuple[Edit, ...] | list[Edit],
+        where: ArrayLike | None = None,
+        *,
+        amount: float = 1.0,
+    ) -> "SkinMaps":
+        """Applies edits or a preset in order, inside the painted mask `where` (H, W), 0–1.
+
+        `amount` in [0, 1] blends between the old values and the new. A painted mask takes the
+        place of procedural patches. Values are clamped to range and counted in `clamped`. Texels
+        whose mask is 0 are never touched.
+        """
+        if not 0 <= amount <= 1:
+            raise CutisError(f"the amount of an edit must lie in 0 to 1, not {amount:g}")
+        edits = [edits] if isinstance(edits, Edit) else list(edits)
+        result = self
+        for edit in edits:
+            weight = np.float32(amount) * self._weight(where)
+            if where is None and edit.where == "patches":
+                weight = weight * patches(self.shape)
+            edited, clamped = edit(getattr(result, edit.parameter), weight)
+            result = replace(
+                result,
+                **{edit.parameter: edited},
+                original=self.original or self,
+                edits=(*result.edits, str(edit)),
+                clamped=(*result.clamped, clamped),
+            )
+        return result
+
+    def _weight(self, where: ArrayLike | None) -> Map:
+        """(H, W) 0–1: `where`, and nothing outside the skin."""
+        inside = (self.mask > 0).astype(np.float32)
+        if where is None:
+            return inside
+        weight = np.asarray(where, dtype=np.float32)
+        if weight.shape != self.shape:
+            raise CutisError(f"the edit mask is {weight.shape}, the maps are {self.shape}")
+        if not (np.isfinite(weight).all() and weight.min() >= 0 and weight.max() <= 1):
+            raise CutisError("the edit mask must hold values from 0 to 1")
+        return weight * inside
+
+    def save(self, path: str | os.PathLike[str], dtype: str = "float") -> None:
+        """Writes maps and mask as channels of one EXR; `dtype` float (exact) or half."""
+        from cutis.maps.files import save_maps
+
+        save_maps(self, path, dtype)
+
+    # colour -----------------------------------------------------------------------------------
+
+    @cached_property
+    def model_albedo(self) -> Map:
+        """(H, W, 3) linear sRGB that the model alone gives, calibration undone; 0 off the mask."""
+        model = load_model(self.model)
+        result = np.zeros((*self.shape, 3), dtype=np.float32)
+        for rows in bands(self.shape):
+            inside = self.mask[rows] > 0
+            result[rows][inside] = self.calibration.undo(
+                model.decode(self.parameters(rows)[inside])
+            )
+        return result
+
+    def albedo(self) -> Map:
+        """(H, W, 3) linear sRGB as captured, edits included.
+
+        What the model does not explain (hair, eyes, detail) rides along as the ratio of capture
+        to model; texels that no edit changed are those of the capture, bit for bit. Without the
+        capture, the model's albedo.
+        """
+        if self.source is None:
+            return self.model_albedo
+        result = self.source.copy()
+        for rows in bands(self.shape):
+            changed, colours = self._changes(rows, self.source[rows])
+            result[rows][changed] = colours
+        return result
+
+    def retouch(self, texture: Texture) -> Texture:
+        """The texture with the edits in it: same format, depth and space, other texels verbatim."""
+        if texture.shape != self.shape:
+            raise CutisError(f"the texture is {texture.shape}, the maps are {self.shape}")
+        everywhere = np.zeros(self.shape, dtype=bool)
+        colours = np.zeros((*self.shape, 3), dtype=np.float32)
+        for rows in bands(self.shape):
+            changed, edited = self._changes(rows, texture.linear_rows(rows))
+            everywhere[rows] = changed
+            colours[rows][changed] = edited
+        return texture.with_linear(colours, everywhere)
+
+    def _changes(self, rows: slice, source: Map) -> tuple[NDArray[np.bool_], Map]:
+        """Texels of some rows that edits changed, and their new colours (n, 3)."""
+        before = (self.original or self).parameters(rows)
+        after = self.parameters(rows)
+        changed = (before != after).any(axis=-1) & (self.mask[rows] > 0)
+        model = load_model(self.model)
+        ratio = model.decode(after[changed]) / model.decode(before[changed])
+        cover = self.mask[rows][changed][:, None]
+        return changed, source[changed] * (1 + cover * (ratio - 1))
+
+    def residual(self) -> Map:
+        """(H, W, 3) capture over model of the estimate: what the model does not explain, 1 = all.
+
+        1 off the mask. Raises CutisError without the capture.
+        """
+        if self.source is None:
+            raise CutisError("these maps came without their capture; read it and estimate again")
+        base = self.original or self
+        result = np.ones_like(self.source)
+        inside = self.mask > 0
+        result[inside] = self.source[inside] / base.model_albedo[inside]
+        return result
+
+    def reflectance(self, rows: slice | None = None) -> Map:
+        """(H, W, 41) reflectance of the model at `optics.WAVELENGTHS`, 0 off the mask.
+
+        A whole 2048² face takes 0.7 GB; give `rows` to go in bands.
+        """
+        from cutis.albedo import albedo_space
+
+        skins = self.parameters(rows)
+        inside = self.mask[slice(None) if rows is None else rows] > 0
+        spectra = albedo_space().reflectance(skins[inside])
+        result = np.zeros((*skins.shape[:2], spectra.shape[-1]), dtype=np.float32)
+        result[inside] = spectra
+        return result
+
+    def statistics(self) -> Iterator[tuple[str, str, float, float, float]]:
+        """(name, unit, 5th percentile, median, 95th percentile) of each map inside the mask."""
+        inside = self.mask > 0
+        for name in NAMES:
+            low, median, high = np.percentile(getattr(self, name)[inside], [5, 50, 95])
+            yield name, parameter(name).unit, float(low), float(median), float(high)
