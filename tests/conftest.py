@@ -5,6 +5,9 @@ from pathlib import Path
 
 import pytest
 
+# Before NumPy loads: on small matrices the threads of its BLAS wait for each other in a loop.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 ROOT = Path(__file__).parents[1]
 SHARED_DATA = Path(os.environ.get("CUTIS_SHARED_DATA") or ROOT.parent / "shared" / "data")
 
@@ -41,3 +44,73 @@ def capture1() -> tuple[Path, Path]:
     """The example capture: (8-bit sRGB albedo, mask)."""
     folder = ROOT / "examples"
     return folder / "bioskin_capture1.jpg", folder / "bioskin_capture1_mask.jpg"
+
+
+@pytest.fixture(scope="session")
+def face_rgb():
+    """(24, 32, 3) linear sRGB of skins whose melanin, blood and thickness vary over the image."""
+    import numpy as np
+
+    from cutis.albedo import albedo_space
+
+    height, width = 24, 32
+    y, x = np.mgrid[:height, :width]
+    skins = np.stack(
+        [
+            0.01 + 0.04 * x / width,
+            0.01 + 0.03 * y / height,
+            60 + 40 * np.sin(x / 5) * np.cos(y / 7),
+            np.full(x.shape, 0.7),
+            np.full(x.shape, 0.7),
+        ],
+        axis=-1,
+    )
+    grain = 1 + 0.01 * np.random.default_rng(0).standard_normal((height, width, 1))
+    rgb = (albedo_space().rgb(skins) * grain).astype(np.float32)
+    rgb.flags.writeable = False
+    return rgb
+
+
+@pytest.fixture(scope="session")
+def face_mask():
+    """(24, 32) mask: 0 in a frame of four texels, 0.5 in the next, 1 inside."""
+    import numpy as np
+
+    mask = np.zeros((24, 32), dtype=np.float32)
+    mask[4:-4, 4:-4] = 0.5
+    mask[5:-5, 5:-5] = 1.0
+    mask.flags.writeable = False
+    return mask
+
+
+STORED = {
+    "png8": (".png", "uint8"),
+    "png16": (".png", "uint16"),
+    "tiff16": (".tif", "uint16"),
+    "exr": (".exr", "float16"),
+}
+"""File formats in which an edit that changes nothing has to be bit for bit."""
+
+
+@pytest.fixture(scope="session")
+def write_face(face_rgb):
+    """`write_face(folder, kind, alpha=False, name="face")` writes the face; returns its path."""
+    import numpy as np
+
+    from cutis.textures import Texture, write_texture
+
+    def write(folder: Path, kind: str = "png8", alpha: bool = False, name: str = "face") -> Path:
+        suffix, dtype = STORED[kind]
+        encoding = "linear" if suffix == ".exr" else "srgb"
+        count = 4 if alpha else 3
+        blank = np.zeros((*face_rgb.shape[:2], count), dtype)
+        if alpha:
+            steps = np.linspace(0, 1, face_rgb.shape[1]) ** 2
+            blank[..., 3] = steps if suffix == ".exr" else np.rint(steps * np.iinfo(dtype).max)
+        texture = Texture(blank, tuple("RGBA"[:count]), encoding, associated=suffix == ".exr")
+        path = folder / f"{name}{suffix}"
+        everywhere = np.ones(face_rgb.shape[:2], bool)
+        write_texture(texture.with_linear(face_rgb, everywhere), path)
+        return path
+
+    return write

@@ -6,8 +6,9 @@ from contextlib import contextmanager
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-out = Console(highlight=False)
-err = Console(stderr=True, highlight=False)
+# Names of files are printed as they are: no markup, no emoji, no line breaks inside them.
+out = Console(highlight=False, markup=False, emoji=False, soft_wrap=True)
+err = Console(stderr=True, highlight=False, markup=False, emoji=False)
 
 
 class Steps:
@@ -32,7 +33,7 @@ class Steps:
 
 @contextmanager
 def steps(total: int, quiet: bool) -> Iterator[Steps]:
-    """A bar on stderr that goes away when done; silent when `quiet`."""
+    """A bar on stderr that goes away when done; none when `quiet` or when nobody watches."""
     columns = (
         TextColumn("{task.description:<24}"),
         BarColumn(),
@@ -40,5 +41,6 @@ def steps(total: int, quiet: bool) -> Iterator[Steps]:
         TextColumn("left"),
         TimeRemainingColumn(),
     )
-    with Progress(*columns, console=err, transient=True, disable=quiet) as progress:
+    hidden = quiet or not err.is_terminal
+    with Progress(*columns, console=err, transient=True, disable=hidden) as progress:
         yield Steps(progress, total)

@@ -42,10 +42,13 @@ def edit(
 
     Example: cutis edit out/face.skin.exr --melanin x1.4 --blood x0.5 -o tanned.png
     """
+    from dataclasses import replace
+
     import numpy as np
 
     from cutis.apps.console import out, steps
-    from cutis.maps import find_source, load_maps, parse_edit
+    from cutis.errors import CutisError
+    from cutis.maps import find_source, load_maps, parse_edit, source_note
     from cutis.maps.presets import preset as named
     from cutis.textures import read_mask, read_texture, write_texture
 
@@ -63,6 +66,11 @@ def edit(
         skin = load_maps(maps)
         path = find_source(skin, maps, source)
         encoding = skin.provenance.get("source_encoding", "auto")
+        for written in (output, save_maps):
+            if written is not None and _same(written, path):
+                raise CutisError(f"{written} is the capture itself; give another name")
+        if _same(output, maps) or (save_maps is not None and _same(output, save_maps)):
+            raise CutisError(f"{output} is a file of maps; give another name for the albedo")
         texture = read_texture(path, options.encoding_name(encoding))
         where = None if mask is None else read_mask(mask, skin.shape)
         progress.step("editing")
@@ -72,7 +80,8 @@ def edit(
         progress.step("writing")
         write_texture(result, output)
         if save_maps is not None:
-            edited.save(save_maps)
+            provenance = source_note(path, save_maps, texture.encoding)
+            replace(edited, provenance=provenance).save(save_maps)
     if quiet:
         return
     for text, clamped in zip(edited.edits, edited.clamped, strict=True):
@@ -80,3 +89,10 @@ def edit(
         out.print(f"{text}{note}")
     changed = int(np.count_nonzero((result.pixels != texture.pixels).any(axis=-1)))
     out.print(f"{changed:,} texels changed; wrote {output}")
+
+
+def _same(one: Path, other: Path) -> bool:
+    """Whether two names are of one file, also through links."""
+    return one.resolve() == other.resolve() or (
+        one.exists() and other.exists() and one.samefile(other)
+    )

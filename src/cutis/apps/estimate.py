@@ -33,7 +33,7 @@ def estimate(
 
     Example: cutis estimate face.png --mask mask.png --white auto -o out/
     """
-    from cutis.apps.console import steps
+    from cutis.apps.console import out, steps
 
     with steps(6, quiet) as progress:
         skin, _, results = run(
@@ -41,6 +41,7 @@ def estimate(
         )
     if not quiet:
         say(results, skin)
+        out.print(f"wrote {output / face.stem}.skin.exr and what belongs to it")
 
 
 def run(
@@ -59,23 +60,17 @@ def run(
 
     import cutis.maps as maps
     from cutis.apps.previews import write_previews
-    from cutis.errors import CutisError
     from cutis.textures import read_mask, read_texture, replacing, write_channels
 
     white_value, exposure_value = options.white_gains(white), options.exposure_gain(exposure)
     step("reading")
     texture = read_texture(face, options.encoding_name(encoding))
     cover = None if mask is None else read_mask(mask, texture.shape)
-    try:
-        output.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise CutisError(f"{output}: cannot make this folder ({error.strerror})") from error
+    options.make_folder(output)
     stem = output / face.stem
 
     step("estimating")
-    skin = maps.estimate(
-        texture, cover, white=white_value, exposure=exposure_value, model=model
-    )
+    skin = maps.estimate(texture, cover, white=white_value, exposure=exposure_value, model=model)
     note = maps.source_note(face, stem, texture.encoding)
     skin = replace(skin, provenance=note)
 
@@ -107,6 +102,9 @@ def say(results: dict[str, Any], skin: "SkinMaps") -> None:
     for name, row in results["maps"].items():
         table.add_row(name, row["unit"], *(f"{row[k]:.4g}" for k in ("p5", "median", "p95")))
     out.print(table)
+    for key, what in (("below_0", "negative"), ("above_1", "above one")):
+        if results[key]:
+            out.print(f"{results[key]:,} texels have a colour {what}, which is no albedo")
     colour = results.get("colour")
     if colour is None:
         out.print("no texel inside the mask has the colour of skin; check mask and encoding")

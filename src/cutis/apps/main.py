@@ -2,7 +2,7 @@
 
 import os
 import sys
-from typing import Annotated
+from typing import Annotated, NoReturn
 
 import typer
 
@@ -11,13 +11,16 @@ from cutis.errors import CutisError
 
 app = typer.Typer(
     name="cutis",
-    help="Skin albedo textures to maps of what the skin is made of, and back. Not a medical device.",
-    no_args_is_help=True,
+    help="Skin albedo textures to maps of what the skin is made of, and back. "
+    "Not a medical device.\n\nExample: cutis estimate face.png --white auto -o out/",
     add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode="rich",
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+
+INTERRUPTED = 130
+"""Exit code after Ctrl-C, by the custom of shells."""
 
 
 def _version(wanted: bool) -> None:
@@ -47,25 +50,33 @@ app.command("demo")(demo.demo)
 
 def main() -> None:
     """Runs the command line; errors end in one line on stderr and a non-zero code."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):  # Δ and × do not fit every terminal
+            stream.reconfigure(errors="replace")
     try:
-        app()
+        arguments = None if sys.argv[1:] else ["--help"]
+        code = app(arguments, prog_name="cutis", standalone_mode=False)
     except CutisError as error:
         _fail(str(error))
-    except BrokenPipeError:  # the reader of our output has left
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        raise SystemExit(1) from None
     except KeyboardInterrupt:
-        _fail("interrupted; files already written are whole", 130)
+        code = INTERRUPTED
     except MemoryError:
         _fail("not enough memory; use a smaller texture or a machine with more")
     except OSError as error:
         _fail(f"{error.filename or 'file system'}: {error.strerror or error}")
     except Exception as error:
+        # Typer brings its own copy of Click; its usage errors are known by what they can do.
+        if hasattr(error, "format_message"):
+            command = getattr(getattr(error, "ctx", None), "command_path", "cutis")
+            _fail(f"{error.format_message().rstrip('.')}; see {command} --help", 2)
         if os.environ.get("CUTIS_DEBUG"):
             raise
         _fail(f"internal error, {type(error).__name__}: {error}; CUTIS_DEBUG=1 shows where", 70)
+    if code == INTERRUPTED:
+        _fail("interrupted; files already written are whole", INTERRUPTED)
+    raise SystemExit(code)
 
 
-def _fail(message: str, code: int = 1) -> None:
+def _fail(message: str, code: int = 1) -> NoReturn:
     print(f"cutis: {' '.join(message.split())}", file=sys.stderr)
     raise SystemExit(code)

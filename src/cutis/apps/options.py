@@ -48,6 +48,15 @@ def encoding_name(text: str) -> Literal["auto", "srgb", "linear"]:
     raise CutisError(f"--encoding must be auto, srgb or linear, not {text!r}")
 
 
+def make_folder(folder: Path) -> None:
+    """Makes the folder of the results; CutisError where that cannot be."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise CutisError(f"{folder}: cannot make this folder ({reason.lower()})") from error
+
+
 def _numbers(text: str, name: str, count: int) -> list[float]:
     try:
         values = [float(part) for part in text.split(",")]

@@ -31,16 +31,21 @@ def write_page(path: Path, stem: Path, results: dict[str, Any], credit: str) -> 
         + "</tr>"
         for name, row in results["maps"].items()
     )
-    colour = results["colour"]
+    colour = results.get("colour")
+    error = (
+        "No texel inside the mask has the colour of skin."
+        if colour is None
+        else f"Model alone against capture on {results['skin_texels']:,} skin texels: ΔE00 mean "
+        f"{colour['delta_e_mean']:.3f}, 95 % {colour['delta_e_p95']:.3f}; out of gamut "
+        f"{100 * colour['out_of_gamut']:.2f} %."
+    )
     gains = ", ".join(f"{gain:.3f}" for gain in results["calibration"]["gains"])
     body = f"""<h1>From a face to its skin and back</h1>
 <div class="row">{"".join(pictures)}</div>
 <h2>Maps</h2><div class="row">{"".join(maps)}</div>
 <h2>Numbers</h2>
 <table><tr><th>map</th><th>unit</th><th>5 %</th><th>median</th><th>95 %</th></tr>{rows}</table>
-<p>Model alone against capture on {results["skin_texels"]:,} skin texels: ΔE00 mean
-{colour["delta_e_mean"]:.3f}, 95 % {colour["delta_e_p95"]:.3f}; out of gamut
-{100 * colour["out_of_gamut"]:.2f} %. Gains found for red, green, blue: {gains}.</p>
+<p>{error} Gains found for red, green, blue: {gains}.</p>
 <p>RGB fixes melanin and blood; thickness, melanin type and oxygenation are most probable values,
 not measurements. Not a medical device.</p><p><small>{html.escape(credit)}</small></p>"""
     page = (

@@ -32,15 +32,18 @@ def reduced(values: NDArray[np.float32]) -> NDArray[np.float32]:
 def write_previews(skin: SkinMaps, stem: Path) -> None:
     """Writes `stem`.<map>.png for the five maps and, with the capture, `stem`.error.png."""
     inside = reduced(skin.mask) > 0
+    masked = skin.mask > 0
     for known in PARAMETERS:
-        values = np.where(inside, reduced(getattr(skin, known.name)), np.nan)
+        whole = getattr(skin, known.name)
+        low, high = np.percentile(whole[masked], [1, 99])
+        values = np.where(inside, reduced(whole), np.nan)
         unit = "" if known.unit == "1" else f" [{known.unit}]"
         _figure(
             Path(f"{stem}.{known.name}.png"),
             values,
             f"{known.meaning}{unit}",
             COLOUR_MAPS[known.name],
-            (float(np.nanpercentile(values, 1)), float(np.nanpercentile(values, 99))),
+            (float(low), float(high)),
         )
     if skin.source is not None:
         from cutis.colour import delta_e

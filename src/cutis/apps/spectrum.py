@@ -40,6 +40,8 @@ def spectrum(
     from cutis.errors import CutisError
     from cutis.optics import NAMES, WAVELENGTHS, skin
 
+    if output is not None and output.suffix.lower() != ".csv":
+        raise CutisError(f"{output}: the spectrum is a table; end its name in .csv")
     flags = dict(zip(NAMES, (melanin, blood, thickness, eumelanin, oxygenation), strict=True))
     given = {name: value for name, value in flags.items() if value is not None}
     if skins is not None and given:
@@ -47,9 +49,7 @@ def spectrum(
     if skins is None:
         header = ["wavelength_nm", "reflectance"]
         spectra = albedo_space().reflectance(skin(given))[None]
-        rows = [
-            [f"{lam:g}", f"{r:.6f}"] for lam, r in zip(WAVELENGTHS, spectra[0], strict=True)
-        ]
+        rows = [[f"{lam:g}", f"{r:.6f}"] for lam, r in zip(WAVELENGTHS, spectra[0], strict=True)]
     else:
         columns, table, parameters = _read(skins)
         header = [*columns, *(f"{lam:g}" for lam in WAVELENGTHS)]
@@ -88,6 +88,7 @@ def _read(path: Path) -> tuple[list[str], list[list[str]], "NDArray[np.float64]"
         raise CutisError(f"{path}: no such file") from None
     except (UnicodeDecodeError, csv.Error):
         raise CutisError(f"{path.name}: not a CSV file in UTF-8") from None
+    columns = [name.strip() for name in columns]
     known = [i for i, name in enumerate(columns) if name in NAMES]
     if not known or not table:
         raise CutisError(

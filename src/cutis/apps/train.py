@@ -10,10 +10,12 @@ from cutis.apps import options
 
 def train(
     recipe: Annotated[
-        str, typer.Argument(help="aliaga2022, aliaga2022-cosine, smoke, or default (the baked one).")
+        str,
+        typer.Argument(help="aliaga2022, aliaga2022-cosine, smoke, or default (the baked one)."),
     ] = "aliaga2022",
     output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="Folder of the run; runs/RECIPE if absent.")
+        Path | None,
+        typer.Option("--output", "-o", help="Folder of the run; runs/RECIPE if absent."),
     ] = None,
     epochs: Annotated[int | None, typer.Option(min=1, help="Instead of the recipe's.")] = None,
     quiet: options.Quiet = False,
@@ -30,16 +32,14 @@ def train(
     from cutis.errors import CutisError
 
     folder = output or Path("runs") / recipe
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise CutisError(f"{folder}: cannot make this folder ({error.strerror})") from error
     if recipe == "default":
-        from cutis.inverse.baked import DEFAULT_PRIOR, bake, save_baked
+        options.make_folder(folder)
+        from cutis.inverse.baked import bake, save_baked
+        from cutis.inverse.models import shipped_encoder
         from cutis.textures import replacing
 
         with steps(1, quiet) as progress:
-            baked = bake(DEFAULT_PRIOR, lambda done, all_: progress.at(done, all_, "baking"))
+            baked = bake(shipped_encoder(), lambda done, all_: progress.at(done, all_, "baking"))
         with replacing(folder / "default.npz") as partial:
             save_baked(baked, partial)
         if not quiet:
@@ -47,7 +47,8 @@ def train(
         return
 
     try:
-        from cutis.inverse.training import RECIPES, train as run
+        from cutis.inverse.training import RECIPES
+        from cutis.inverse.training import train as run
     except ModuleNotFoundError as error:
         raise CutisError(
             f"training needs PyTorch ({error.name} is missing); pip install 'cutis[train]'"
@@ -56,6 +57,7 @@ def train(
         raise CutisError(f"unknown recipe {recipe!r}; known are default, {', '.join(RECIPES)}")
     from dataclasses import replace
 
+    options.make_folder(folder)
     chosen = RECIPES[recipe] if epochs is None else replace(RECIPES[recipe], epochs=epochs)
     with steps(chosen.epochs, quiet) as progress:
         metrics = run(

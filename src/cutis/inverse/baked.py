@@ -1,7 +1,7 @@
 """The most probable skin of every colour, baked into a three-dimensional table.
 
 Whatever computes it, an inverse from RGB is a function of three numbers. The table holds the fit
-of `fit.py` under a prior as uniform cubic B-splines (their values are twice differentiable, so
+of `fit.py` around the estimate of an encoder as uniform cubic B-splines (their values are twice differentiable, so
 maps are as smooth as the colours) over
 
     a = G^¼,   b = R / (R + G),   c = B / (B + G),
@@ -9,9 +9,8 @@ maps are as smooth as the colours) over
 in which the gamut of skin is compact. Colours beyond the ends of an axis take the end's value.
 """
 
-import json
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -19,26 +18,20 @@ from numpy.typing import ArrayLike, NDArray
 
 from cutis.albedo import albedo_space
 from cutis.inverse.fit import fit
+from cutis.inverse.network import Perceptron
 
-LOW = (0.22, 0.40, 0.06)
-"""Low ends of a, b, c."""
-HIGH = (1.0, 0.84, 0.56)
+LOW = (0.32, 0.49, 0.09)
+"""Low ends of a, b, c: just outside the albedo space."""
+HIGH = (0.92, 0.93, 0.58)
 """High ends of a, b, c."""
-CELLS = (40, 32, 32)
+CELLS = (56, 40, 40)
 """Cells of the splines over a, b, c."""
 
 
-@dataclass(frozen=True)
-class Prior:
-    """What skin is expected to be when colour leaves a choice.
-
-    `centre` are network coordinates, `precision` the (5, 5) inverse covariance of their logits,
-    `tolerance` the relative colour error worth one standard deviation (see `fit.py`).
-    """
-
-    centre: tuple[float, ...]
-    precision: tuple[tuple[float, ...], ...]
-    tolerance: float
+PRECISION = (3.0, 1.0, 1.0, 3.0, 1.0)
+"""Inverse variances of the logits around the encoder's estimate."""
+TOLERANCE = 0.01
+"""Relative colour error worth one standard deviation of the prior (see `fit.py`)."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +39,6 @@ class Baked:
     """B-spline coefficients (a, b, c, 5), float32, of coordinates u over the chart."""
 
     coefficients: NDArray[np.float32]
-    prior: Prior
 
     def __call__(self, colours: ArrayLike) -> NDArray[np.float32]:
         """(n, 3) calibrated linear sRGB → (n, 5) network coordinates in [0, 1]."""
@@ -69,20 +61,24 @@ def chart_colours() -> NDArray[np.float32]:
     return rgb.reshape(-1, 3).astype(np.float32)
 
 
-def bake(prior: Prior, progress: Callable[[int, int], None] | None = None) -> Baked:
-    """Fits every node of the chart under `prior` (seconds); `progress(done, total)`."""
+def bake(encoder: Perceptron, progress: Callable[[int, int], None] | None = None) -> Baked:
+    """Fits every node of the chart (seconds), with what `encoder` estimates as prior mean.
+
+    An encoder trained on skins spread evenly over the albedo space estimates the mean of all skins
+    of a colour; the fit moves from there to the nearest skin that has exactly that colour.
+    `progress(done, total)` is called now and then.
+    """
     colours = chart_colours()
     space = albedo_space()
     nodes = np.empty((len(colours), 5), dtype=np.float32)
     step = -(-len(colours) // 20)
     for start in range(0, len(colours), step):
         part = slice(start, start + step)
-        nodes[part] = fit(
-            space, colours[part], np.array(prior.centre), np.array(prior.precision), prior.tolerance
-        )
+        centres = encoder(colours[part])
+        nodes[part] = fit(space, colours[part], centres, np.diag(PRECISION), TOLERANCE)
         if progress:
             progress(min(start + step, len(colours)), len(colours))
-    return Baked(_splines(nodes.reshape(*(n + 1 for n in CELLS), 5)), prior)
+    return Baked(_splines(nodes.reshape(*(n + 1 for n in CELLS), 5)))
 
 
 def _splines(values: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -101,28 +97,14 @@ def _splines(values: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def save_baked(baked: Baked, file: Path) -> None:
-    """Writes a baked inverse as .npz: coefficients in steps of 1/65535, prior as text."""
+    """Writes a baked inverse as .npz, coefficients in steps of 1/65535 of their range."""
     low, high = float(baked.coefficients.min()), float(baked.coefficients.max())
     steps = np.round((baked.coefficients - low) / (high - low) * 65535).astype(np.uint16)
-    np.savez_compressed(
-        file, steps=steps, ends=np.array([low, high]), prior=np.array(json.dumps(asdict(baked.prior)))
-    )
+    np.savez_compressed(file, steps=steps, ends=np.array([low, high]))
 
 
 def load_baked(file: Path) -> Baked:
     """Reads what `save_baked` wrote."""
     with np.load(file, allow_pickle=False) as stored:
         low, high = stored["ends"]
-        coefficients = (low + stored["steps"] / 65535 * (high - low)).astype(np.float32)
-        note = json.loads(str(stored["prior"]))
-    return Baked(
-        coefficients,
-        Prior(
-            tuple(note["centre"]), tuple(tuple(r) for r in note["precision"]), note["tolerance"]
-        ),
-    )
-DEFAULT_PRIOR = Prior(
-    centre=(0.406, 0.613, 0.502, 0.262, 0.741),
-    precision=tuple(tuple(float(x) for x in row) for row in np.diag([0.73, 1.2, 14.8, 8.4, 9.3])),
-    tolerance=0.0037,
-)
+        return Baked((low + stored["steps"] / 65535 * (high - low)).astype(np.float32))

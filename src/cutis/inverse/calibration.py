@@ -43,11 +43,11 @@ class Calibration:
 
     def apply(self, rgb: ArrayLike) -> NDArray[np.float32]:
         """(..., 3) linear sRGB as captured → calibrated."""
-        return np.asarray(rgb, dtype=np.float32) * np.array(self.gains, dtype=np.float32)
+        return np.multiply(rgb, np.array(self.gains, np.float32), dtype=np.float32)
 
     def undo(self, rgb: ArrayLike) -> NDArray[np.float32]:
         """(..., 3) calibrated linear sRGB → as captured."""
-        return np.asarray(rgb, dtype=np.float32) / np.array(self.gains, dtype=np.float32)
+        return np.divide(rgb, np.array(self.gains, np.float32), dtype=np.float32)
 
 
 def calibrate(rgb: ArrayLike, white: White = None, exposure: Exposure = None) -> Calibration:
@@ -66,8 +66,8 @@ def calibrate(rgb: ArrayLike, white: White = None, exposure: Exposure = None) ->
         if isinstance(value, str) and value not in ("none", "auto"):
             raise CutisError(f"--{name} must be none, auto or numbers, not {value!r}")
     if white != "auto" and exposure != "auto":
-        gains = tuple(float(g) for g in fixed)
-        return Calibration(gains, "given" if np.any(fixed != 1) else "none")
+        red, green, blue = (float(g) for g in fixed)
+        return Calibration((red, green, blue), "given" if np.any(fixed != 1) else "none")
     if white == "auto":
         found = _search(np.asarray(rgb) * fixed, np.eye(3))
     else:
@@ -77,7 +77,10 @@ def calibrate(rgb: ArrayLike, white: White = None, exposure: Exposure = None) ->
 
 
 def _checked(values: Sequence[float], count: int, name: str) -> NDArray[np.float64]:
-    gains = np.asarray(values, dtype=np.float64)
+    try:
+        gains = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        gains = np.empty(0)
     low, high = LIMITS
     if gains.shape != (count,) or not np.all((gains >= low) & (gains <= high)):
         numbers = "one number" if count == 1 else "three numbers (red,green,blue)"

@@ -1,6 +1,6 @@
 """Models by name: how a colour becomes a skin, and a skin a colour.
 
-`default` reads the baked most probable skin and decodes through the exact albedo space;
+`default` reads the baked inverse and decodes through the exact albedo space;
 `aliaga2022` is the paper's pair of networks, trained by `cutis train`.
 """
 
@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from cutis.albedo import albedo_space
 from cutis.errors import CutisError
+from cutis.inverse.network import Perceptron, load_weights
 from cutis.optics import from_coordinates, to_coordinates
 
 MODELS = ("default", "aliaga2022")
@@ -77,8 +78,13 @@ def load_model(name: str = "default") -> Model:
     )
 
 
-def _networks(name: str, file: Path) -> Model:
-    from cutis.inverse.network import load_weights
+def shipped_encoder() -> Perceptron:
+    """The encoder of `aliaga2022`, on which the default inverse is baked."""
+    file = resources.files("cutis.data").joinpath("weights", "aliaga2022.safetensors")
+    with resources.as_file(file) as path:
+        return load_weights(path).encoder
 
+
+def _networks(name: str, file: Path) -> Model:
     networks = load_weights(file)
     return Model(name, networks.encoder, lambda skins: networks.decoder(to_coordinates(skins)))

@@ -7,6 +7,7 @@ Weights are stored as safetensors: `encoder.0.weight` (out, in), `encoder.0.bias
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -35,7 +36,7 @@ class Perceptron:
         flat = x.reshape(-1, x.shape[-1])
         out = np.empty((len(flat), len(self.biases[-1])), dtype=np.float32)
         forward(flat, *self._padded(), out)
-        return out.reshape(*x.shape[:-1], -1)
+        return out.reshape(*x.shape[:-1], out.shape[1])
 
     def reference(self, values: ArrayLike) -> NDArray[np.float64]:
         """The same in plain float64 NumPy: the oracle of the fast form."""
@@ -71,19 +72,29 @@ def load_weights(file: Path) -> Autoencoder:
 
     try:
         tensors = load_file(file)
-        halves = [_perceptron(tensors, half) for half in ("encoder", "decoder")]
+        encoder = _perceptron(tensors, "encoder", layer_sizes(3, 5))
+        decoder = _perceptron(tensors, "decoder", layer_sizes(5, 3))
     except Exception as error:
         raise CutisError(f"{file.name}: not a file of encoder and decoder weights") from error
-    return Autoencoder(*halves)
+    return Autoencoder(encoder, decoder)
 
 
-def _perceptron(tensors: dict[str, NDArray[np.float32]], half: str) -> Perceptron:
-    weights = tuple(tensors[f"{half}.{i}.weight"] for i in range(LAYERS))
-    biases = tuple(tensors[f"{half}.{i}.bias"] for i in range(LAYERS))
-    return Perceptron(weights, biases)
+def _perceptron(
+    tensors: dict[str, NDArray[np.generic]], half: str, sizes: Sequence[tuple[int, int]]
+) -> Perceptron:
+    weights, biases = [], []
+    for i, (inputs, outputs) in enumerate(sizes):
+        weight, bias = tensors[f"{half}.{i}.weight"], tensors[f"{half}.{i}.bias"]
+        if weight.shape != (outputs, inputs) or bias.shape != (outputs,):
+            raise ValueError(f"layer {i} of the {half} has another size")
+        weights.append(weight.astype(np.float32))
+        biases.append(bias.astype(np.float32))
+        if not (np.isfinite(weights[-1]).all() and np.isfinite(biases[-1]).all()):
+            raise ValueError(f"layer {i} of the {half} holds NaN or infinity")
+    return Perceptron(tuple(weights), tuple(biases))
 
 
 def layer_sizes(inputs: int, outputs: int) -> Sequence[tuple[int, int]]:
     """(in, out) of each layer: 3 → 70 → 70 → 70 → 5 for the encoder."""
     sizes = [inputs, *[HIDDEN] * (LAYERS - 1), outputs]
-    return list(zip(sizes[:-1], sizes[1:], strict=True))
+    return list(pairwise(sizes))

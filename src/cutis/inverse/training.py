@@ -8,16 +8,18 @@ been.
 """
 
 import csv
+import io
 import json
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from safetensors.torch import load_file, save_file
+from safetensors.torch import load_file, save
 
 from cutis.albedo import albedo_space, halton, uniform
 from cutis.errors import CutisError
@@ -57,15 +59,18 @@ class _Networks(torch.nn.Module):
 
     def __init__(self) -> None:
         super().__init__()
-        for half, ends in (("encoder", (3, 5)), ("decoder", (5, 3))):
-            layers = [torch.nn.Linear(i, o) for i, o in layer_sizes(*ends)]
-            setattr(self, half, torch.nn.ModuleList(layers))
+        self.encoder = _layers(3, 5)
+        self.decoder = _layers(5, 3)
 
     def encode(self, rgb: torch.Tensor) -> torch.Tensor:
         return _forward(self.encoder, rgb)
 
     def decode(self, coordinates: torch.Tensor) -> torch.Tensor:
         return _forward(self.decoder, coordinates)
+
+
+def _layers(inputs: int, outputs: int) -> torch.nn.ModuleList:
+    return torch.nn.ModuleList(torch.nn.Linear(i, o) for i, o in layer_sizes(inputs, outputs))
 
 
 def _forward(layers: torch.nn.ModuleList, x: torch.Tensor) -> torch.Tensor:
@@ -104,7 +109,7 @@ def train(recipe: Recipe, folder: Path, progress: Progress | None = None) -> dic
     total = steps * recipe.epochs
 
     started = time.perf_counter() - float(state["seconds"])
-    curves: list[dict[str, float]] = state["curves"]
+    curves = state["curves"]
     for epoch in range(int(state["epochs"]), recipe.epochs):
         order = torch.randperm(len(u), generator=torch.Generator().manual_seed(epoch))
         running = torch.zeros(())
@@ -112,24 +117,25 @@ def train(recipe: Recipe, folder: Path, progress: Progress | None = None) -> dic
             for group in optimiser.param_groups:
                 group["lr"] = _learning_rate(recipe, (epoch * steps + step) / total)
             optimiser.zero_grad(set_to_none=True)
-            loss = sum(_losses(networks, u[rows], rgb[rows]))
+            parameter, albedo, cycle = _losses(networks, u[rows], rgb[rows])
+            loss = parameter + albedo + cycle
             loss.backward()
             optimiser.step()
             running += loss.detach()
         if (epoch + 1) % max(1, recipe.epochs // 40) == 0 or epoch + 1 == recipe.epochs:
             with torch.no_grad():
-                parameter, albedo, cycle = (float(x) for x in _losses(networks, *validation))
+                errors = [float(x) for x in _losses(networks, *validation)]
             curves.append(
                 {
                     "epoch": epoch + 1,
                     "training_loss": float(running) / steps,
-                    "validation_parameter_l2": parameter,
-                    "validation_albedo_l1": albedo,
-                    "validation_cycle_l1": cycle,
+                    "validation_parameter_l2": errors[0],
+                    "validation_albedo_l1": errors[1],
+                    "validation_cycle_l1": errors[2],
                 }
             )
-            state = {"epochs": epoch + 1, "seconds": time.perf_counter() - started}
-            _checkpoint(recipe, folder, networks, optimiser, {**state, "curves": curves})
+            state["epochs"], state["seconds"] = epoch + 1, time.perf_counter() - started
+            _checkpoint(recipe, folder, networks, optimiser, state)
         if progress:
             progress(epoch + 1, recipe.epochs, float(running) / steps)
 
@@ -139,8 +145,9 @@ def train(recipe: Recipe, folder: Path, progress: Progress | None = None) -> dic
         "threads": torch.get_num_threads(),
         "validation": evaluate(networks, *validation),
     }
-    _write(folder / "weights.safetensors", lambda p: save_file(networks.state_dict(), p))
-    _write(folder / "metrics.json", lambda p: p.write_text(json.dumps(metrics, indent=2) + "\n"))
+    _write(folder / "curves.csv", _table(curves))
+    _write(folder / "weights.safetensors", save(networks.state_dict()))
+    _write(folder / "metrics.json", (json.dumps(metrics, indent=2) + "\n").encode())
     return metrics
 
 
@@ -159,7 +166,7 @@ def evaluate(networks: _Networks, u: torch.Tensor, rgb: torch.Tensor) -> dict[st
     }
 
 
-def _named(values: NDArray[np.float32]) -> dict[str, float]:
+def _named(values: NDArray[np.floating]) -> dict[str, float]:
     return {name: float(value) for name, value in zip(NAMES, values, strict=True)}
 
 
@@ -187,33 +194,41 @@ def _checkpoint(
     folder: Path,
     networks: _Networks,
     optimiser: torch.optim.Optimizer,
-    state: dict[str, object],
+    state: dict[str, Any],
 ) -> None:
     tensors = {f"network/{name}": value for name, value in networks.state_dict().items()}
     for i, slots in optimiser.state_dict()["state"].items():
         tensors.update({f"adam/{i}/{name}": value for name, value in slots.items()})
     note = {"state": json.dumps({**state, "recipe": asdict(recipe)})}
-    _write(folder / "checkpoint.safetensors", lambda p: save_file(tensors, p, note))
-    with (folder / "curves.csv").open("w", newline="") as file:
-        writer = csv.DictWriter(file, state["curves"][0])
-        writer.writeheader()
-        writer.writerows(state["curves"])
+    _write(folder / "checkpoint.safetensors", save(tensors, note))
+    _write(folder / "curves.csv", _table(state["curves"]))
+
+
+def _table(curves: list[dict[str, float]]) -> bytes:
+    text = io.StringIO(newline="")
+    writer = csv.DictWriter(text, curves[0], lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(curves)
+    return text.getvalue().encode()
 
 
 def _resume(
     recipe: Recipe, folder: Path, networks: _Networks, optimiser: torch.optim.Optimizer
-) -> dict[str, object]:
+) -> dict[str, Any]:
     """Restores the checkpoint in `folder` if there is one; (epochs, seconds, curves) so far."""
-    from safetensors import safe_open
+    from safetensors import SafetensorError, safe_open
 
     path = folder / "checkpoint.safetensors"
     if not path.exists():
         return {"epochs": 0, "seconds": 0.0, "curves": []}
-    with safe_open(path, "pt") as file:
-        state = json.loads(file.metadata()["state"])
+    try:
+        with safe_open(path, "pt") as file:
+            state: dict[str, Any] = json.loads(file.metadata()["state"])
+        tensors = load_file(path)
+    except (SafetensorError, ValueError, KeyError, TypeError) as error:
+        raise CutisError(f"{path} is damaged; delete it to start again") from error
     if state.pop("recipe") != asdict(recipe):
         raise CutisError(f"{folder} holds a run of another recipe; give another folder with -o")
-    tensors = load_file(path)
     networks.load_state_dict(
         {k.removeprefix("network/"): v for k, v in tensors.items() if k.startswith("network/")}
     )
@@ -227,10 +242,13 @@ def _resume(
     return state
 
 
-def _write(path: Path, write: Callable[[Path], object]) -> None:
+def _write(path: Path, content: bytes) -> None:
     """Writes beside `path` and renames, so that a killed run leaves no half file."""
     partial = path.with_name(f".{path.name}.partial")
-    write(partial)
-    partial.replace(path)
-
-
+    try:
+        partial.write_bytes(content)
+        partial.replace(path)
+    except OSError as error:
+        raise CutisError(f"{path}: cannot be written ({error.strerror})") from error
+    finally:
+        partial.unlink(missing_ok=True)

@@ -14,6 +14,7 @@ OPERATIONS: dict[str, Callable[[NDArray[np.float32], float], NDArray[np.float32]
     "offset": lambda values, amount: values + np.float32(amount),
     "set": lambda values, amount: np.full_like(values, amount),
 }
+WHERE = ("everywhere", "patches")
 
 
 @dataclass(frozen=True)
@@ -34,6 +35,8 @@ class Edit:
         known = parameter(self.parameter)
         if self.operation not in OPERATIONS:
             raise CutisError(f"unknown operation {self.operation!r}; use {', '.join(OPERATIONS)}")
+        if self.where not in WHERE:
+            raise CutisError(f"unknown place {self.where!r}; use {', '.join(WHERE)}")
         if not np.isfinite(self.amount) or (self.operation == "multiply" and self.amount < 0):
             raise CutisError(f"cannot {self.operation} {self.parameter} by {self.amount:g}")
         if self.operation == "set":
@@ -54,12 +57,17 @@ class Edit:
         """
         known = parameter(self.parameter)
         edited = OPERATIONS[self.operation](values, self.amount)
-        limited = np.clip(edited, np.float32(known.low), np.float32(known.high))
-        changes = np.ones(values.shape, bool) if weight is None else weight > 0
-        clamped = int(np.count_nonzero((limited != edited) & changes))
-        if weight is not None:
-            limited = np.where(changes, values + weight * (limited - values), values)
-        return limited.astype(np.float32), clamped
+        low, high = np.float32(known.low), np.float32(known.high)
+        limited = np.clip(edited, low, high)
+        if weight is None:
+            return limited, int(np.count_nonzero(limited != edited))
+        clamped = int(np.count_nonzero((limited != edited) & (weight > 0)))
+        partial = (weight > 0) & (weight < 1) & (limited != values)
+        result = np.where(weight > 0, limited, values)
+        old = values[partial]
+        mixed = old + weight[partial] * (limited[partial] - old)
+        result[partial] = np.clip(mixed, low, high)  # rounding may overshoot by a last digit
+        return result, clamped
 
 
 def parse_edit(name: str, text: str) -> Edit:

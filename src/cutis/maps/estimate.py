@@ -1,5 +1,7 @@
 """From a capture to its skin maps."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -29,7 +31,7 @@ def estimate(
     cover = _cover(face, mask, source.shape[:2])
     inverse = load_model(model)
     calibration = calibrate(_sample(source, cover), white, exposure)
-    maps = {name: np.zeros(cover.shape, dtype=np.float32) for name in NAMES}
+    maps: dict[str, Any] = {name: np.zeros(cover.shape, dtype=np.float32) for name in NAMES}
     for rows in bands(cover.shape):
         inside = cover[rows] > 0
         skins = inverse.encode(calibration.apply(source[rows][inside]))
@@ -49,9 +51,11 @@ def _linear(face: Texture | ArrayLike) -> NDArray[np.float32]:
             f"an albedo array must be floating-point linear sRGB, not {colours.dtype}; "
             "decode it first, or give a file to cutis.read"
         )
-    if not np.isfinite(colours).all():
+    with np.errstate(over="ignore"):
+        linear = colours.astype(np.float32)  # a copy: what happens to the array later is not seen
+    if not all(np.isfinite(linear[rows]).all() for rows in bands(linear.shape[:2])):
         raise CutisError("the albedo has NaN or infinite texels; repair them first")
-    return colours.astype(np.float32)
+    return linear
 
 
 def _cover(
@@ -61,7 +65,7 @@ def _cover(
         alpha = face.alpha() if isinstance(face, Texture) else None
         cover = np.ones(shape, np.float32) if alpha is None else (alpha > 0).astype(np.float32)
     else:
-        cover = np.asarray(mask, dtype=np.float32)
+        cover = np.array(mask, dtype=np.float32)
     if cover.shape != shape:
         raise CutisError(f"the mask is {cover.shape}, the albedo is {tuple(shape)}")
     if not (np.isfinite(cover).all() and cover.min() >= 0 and cover.max() <= 1):

@@ -2,28 +2,41 @@
 
 Parameter maps are data, not colour: no transfer function ever touches them. The capture itself
 is not copied; the header names it (relative to the EXR) and its SHA-256, so that an edit can find
-it again and refuses another file.
+it again and refuses another file. Of edited maps, what the estimate was before is kept as
+`original.<map>`: the capture shows the skin before the edit, so its colours change by the ratio of
+the two, however often the maps are saved and edited again.
 """
 
+import contextlib
 import hashlib
 import json
 import os
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 import cutis.textures as textures
 from cutis.errors import CutisError
 from cutis.inverse.calibration import Calibration
 from cutis.maps.skin_maps import SkinMaps
-from cutis.optics import NAMES, PARAMETERS
+from cutis.optics import NAMES, PARAMETERS, Parameter
 
 PREFIX = "cutis:"
+ORIGINAL = "original."
+"""Before the names of maps as they were before edits; maps that are the same are left out."""
 
 
 def save_maps(skin: SkinMaps, path: str | os.PathLike[str], dtype: str = "float") -> None:
     """Writes maps and mask to `path` (.exr); `dtype` is float (exact) or half (11 bits)."""
     channels = {name: getattr(skin, name) for name in (*NAMES, "mask")}
+    if skin.original is not None:
+        for name in NAMES:
+            before = getattr(skin.original, name)
+            if not np.array_equal(before, channels[name]):
+                channels[ORIGINAL + name] = before
     header: dict[str, str | float | int] = {
         f"{PREFIX}{p.name}": f"{p.meaning} [{p.unit}], {p.low:g} to {p.high:g}" for p in PARAMETERS
     }
@@ -32,7 +45,7 @@ def save_maps(skin: SkinMaps, path: str | os.PathLike[str], dtype: str = "float"
         {"gains": skin.calibration.gains, "origin": skin.calibration.origin}
     )
     if skin.edits:
-        header[f"{PREFIX}edits"] = json.dumps(list(skin.edits))
+        header[f"{PREFIX}edits"] = json.dumps(list(zip(skin.edits, skin.clamped, strict=True)))
     for key, value in skin.provenance.items():
         header[f"{PREFIX}{key}"] = value
     if dtype not in ("float", "half"):
@@ -50,42 +63,67 @@ def load_maps(path: str | os.PathLike[str]) -> SkinMaps:
             f"{path.name}: not a file of skin maps (no channel {', '.join(missing)}); "
             "make one with: cutis estimate"
         )
-    shape = channels["melanin"].shape
-    mask = channels.get("mask", np.ones(shape, dtype=np.float32))
-    inside = mask > 0
-    maps = {}
-    for known in PARAMETERS:
-        values = channels[known.name]
-        slack = 1e-3 * (known.high - known.low)  # what storing as half may add
-        bad = ~((values >= known.low - slack) & (values <= known.high + slack)) & inside
-        if bad.any():
-            raise CutisError(
-                f"{path.name}: {int(bad.sum())} texels of {known.name} are outside "
-                f"{known.low:g} to {known.high:g} {known.unit}"
-            )
-        maps[known.name] = np.where(inside, np.clip(values, known.low, known.high), 0).astype(
-            np.float32
-        )
+    mask = channels.get("mask", np.ones(channels["melanin"].shape, dtype=np.float32))
+    if not (mask.min() >= 0 and 0 < mask.max() <= 1):  # NaN fails too
+        raise CutisError(f"{path.name}: its mask is empty or not within 0 to 1; estimate again")
+    maps: dict[str, Any] = {p.name: _checked(path, channels[p.name], p, mask) for p in PARAMETERS}
+    before = {
+        p.name: _checked(path, channels[ORIGINAL + p.name], p, mask)
+        for p in PARAMETERS
+        if ORIGINAL + p.name in channels
+    }
     notes = {k[len(PREFIX) :]: str(v) for k, v in metadata.items() if k.startswith(PREFIX)}
     try:
         stored = json.loads(notes.pop("calibration", '{"gains": [1, 1, 1], "origin": "none"}'))
         red, green, blue = (float(g) for g in stored["gains"])
+        if not all(0 < gain < float("inf") for gain in (red, green, blue)):
+            raise ValueError("gains must be positive")
         calibration = Calibration((red, green, blue), str(stored["origin"]))
-        edits = tuple(str(e) for e in json.loads(notes.pop("edits", "[]")))
+        edits = [
+            (str(edit), int(clamped)) for edit, clamped in json.loads(notes.pop("edits", "[]"))
+        ]
     except (ValueError, KeyError, TypeError) as error:
         raise CutisError(f"{path.name}: its header is damaged; estimate again") from error
     model = notes.pop("model", "default")
     provenance = {key: value for key, value in notes.items() if key not in NAMES}
-    return SkinMaps(
-        **maps, mask=mask, calibration=calibration, model=model, edits=edits, provenance=provenance
+    skin = SkinMaps(**maps, mask=mask, calibration=calibration, model=model, provenance=provenance)
+    if not (edits or before):
+        return skin
+    changes: dict[str, Any] = before
+    return replace(
+        skin,
+        original=replace(skin, **changes),
+        edits=tuple(edit for edit, _ in edits),
+        clamped=tuple(clamped for _, clamped in edits),
     )
+
+
+def _checked(
+    path: Path, values: NDArray[np.float32], known: Parameter, mask: NDArray[np.float32]
+) -> NDArray[np.float32]:
+    """A stored map, 0 off the mask; CutisError where it is out of range."""
+    inside = mask > 0
+    slack = 1e-3 * (known.high - known.low)  # what storing as half may add
+    bad = ~((values >= known.low - slack) & (values <= known.high + slack)) & inside
+    if bad.any():
+        raise CutisError(
+            f"{path.name}: {int(bad.sum())} texels of {known.name} are outside "
+            f"{known.low:g} to {known.high:g} {known.unit}; estimate again"
+        )
+    low, high = np.float32(known.low), np.float32(known.high)
+    return np.where(inside, np.clip(values, low, high), np.float32(0))
 
 
 def source_note(source: Path, beside: Path, encoding: str) -> dict[str, str]:
     """Provenance of a capture: its path from the folder of `beside`, SHA-256 and encoding."""
-    relative = os.path.relpath(source.resolve(), beside.resolve().parent)
-    return {"source": Path(relative).as_posix(), "source_sha256": digest(source),
-            "source_encoding": encoding}  # fmt: skip
+    place = source.resolve()
+    with contextlib.suppress(ValueError):  # on another drive
+        place = Path(os.path.relpath(place, beside.resolve().parent))
+    return {
+        "source": place.as_posix(),
+        "source_sha256": digest(source),
+        "source_encoding": encoding,
+    }
 
 
 def find_source(skin: SkinMaps, maps_path: Path, given: Path | None = None) -> Path:
@@ -96,17 +134,18 @@ def find_source(skin: SkinMaps, maps_path: Path, given: Path | None = None) -> P
     name = skin.provenance.get("source")
     if given is None and name is None:
         raise CutisError(f"{maps_path.name} does not name its capture; give it with --source")
-    candidates = [given] if given else [maps_path.parent / str(name),
-                                        maps_path.parent / Path(str(name)).name]  # fmt: skip
-    for candidate in candidates:
-        if candidate.is_file():
-            expected = skin.provenance.get("source_sha256")
-            if expected and digest(candidate) != expected:
-                raise CutisError(
-                    f"{candidate.name} has changed since {maps_path.name} was made; "
-                    "estimate again, or give the original with --source"
-                )
+    beside = maps_path.parent
+    candidates = [given] if given else [beside / str(name), beside / Path(str(name)).name]
+    present = [candidate for candidate in candidates if candidate.is_file()]
+    expected = skin.provenance.get("source_sha256")
+    for candidate in present:
+        if expected is None or digest(candidate) == expected:
             return candidate
+    if present:
+        raise CutisError(
+            f"{present[0].name} has changed since {maps_path.name} was made; "
+            "estimate again, or give the original with --source"
+        )
     raise CutisError(
         f"the capture {candidates[0]} of {maps_path.name} is missing; give it with --source"
     )

@@ -4,6 +4,7 @@ import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,6 +19,9 @@ from cutis.textures.texture import Texture, bands
 
 Map = NDArray[np.float32]
 
+DARKEST = np.float32(1e-4)
+"""Model albedo that ratios are taken over at least, so that they stay finite."""
+
 
 @dataclass(frozen=True, eq=False)
 class SkinMaps:
@@ -29,6 +33,8 @@ class SkinMaps:
     estimate that this was edited from, None for an estimate itself; `edits` what was done since,
     and `clamped` how many texels each edit pushed against the end of a range. `provenance` is
     free text for the file header.
+
+    All arrays are read-only: a map changed in place would not count as an edit.
     """
 
     melanin: Map
@@ -37,7 +43,7 @@ class SkinMaps:
     eumelanin: Map
     oxygenation: Map
     mask: Map
-    calibration: Calibration = Calibration()
+    calibration: Calibration = field(default_factory=Calibration)
     model: str = "default"
     source: Map | None = None
     original: "SkinMaps | None" = None
@@ -46,9 +52,16 @@ class SkinMaps:
     provenance: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for name in (*NAMES, "mask"):
-            if getattr(self, name).shape != self.melanin.shape:
-                raise CutisError(f"map {name} has another size than the others")
+        for name in (*NAMES, "mask", "source"):
+            values = getattr(self, name)
+            if values is None:
+                continue
+            view = np.asarray(values, dtype=np.float32).view()
+            view.flags.writeable = False
+            object.__setattr__(self, name, view)
+            expected = (*self.melanin.shape, 3) if name == "source" else self.melanin.shape
+            if view.shape != expected or self.melanin.ndim != 2:
+                raise CutisError(f"{name} is {view.shape}, the maps are {self.melanin.shape}")
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -74,7 +87,9 @@ class SkinMaps:
         """Sets maps to values: `skin.replace(eumelanin=0.001)`."""
         return self.apply([Edit(k, "set", v) for k, v in values.items()], where)
 
-    def blend(self, amount: float, *, where: ArrayLike | None = None, **values: float) -> "SkinMaps":
+    def blend(
+        self, amount: float, *, where: ArrayLike | None = None, **values: float
+    ) -> "SkinMaps":
         """Moves maps part of the way, `amount` in [0, 1], towards values."""
         return self.apply([Edit(k, "set", v) for k, v in values.items()], where, amount=amount)
 
@@ -94,15 +109,16 @@ class SkinMaps:
         if not 0 <= amount <= 1:
             raise CutisError(f"the amount of an edit must lie in 0 to 1, not {amount:g}")
         edits = [edits] if isinstance(edits, Edit) else list(edits)
+        whole = np.float32(amount) * self._weight(where)
         result = self
         for edit in edits:
-            weight = np.float32(amount) * self._weight(where)
-            if where is None and edit.where == "patches":
-                weight = weight * patches(self.shape)
+            procedural = where is None and edit.where == "patches"
+            weight = whole * patches(self.shape) if procedural else whole
             edited, clamped = edit(getattr(result, edit.parameter), weight)
+            changes: dict[str, Any] = {edit.parameter: edited}
             result = replace(
                 result,
-                **{edit.parameter: edited},
+                **changes,
                 original=self.original or self,
                 edits=(*result.edits, str(edit)),
                 clamped=(*result.clamped, clamped),
@@ -139,6 +155,7 @@ class SkinMaps:
             result[rows][inside] = self.calibration.undo(
                 model.decode(self.parameters(rows)[inside])
             )
+        result.flags.writeable = False  # it is kept
         return result
 
     def albedo(self) -> Map:
@@ -149,7 +166,7 @@ class SkinMaps:
         capture, the model's albedo.
         """
         if self.source is None:
-            return self.model_albedo
+            return self.model_albedo.copy()
         result = self.source.copy()
         for rows in bands(self.shape):
             changed, colours = self._changes(rows, self.source[rows])
@@ -174,7 +191,7 @@ class SkinMaps:
         after = self.parameters(rows)
         changed = (before != after).any(axis=-1) & (self.mask[rows] > 0)
         model = load_model(self.model)
-        ratio = model.decode(after[changed]) / model.decode(before[changed])
+        ratio = model.decode(after[changed]) / np.maximum(model.decode(before[changed]), DARKEST)
         cover = self.mask[rows][changed][:, None]
         return changed, source[changed] * (1 + cover * (ratio - 1))
 
@@ -188,7 +205,7 @@ class SkinMaps:
         base = self.original or self
         result = np.ones_like(self.source)
         inside = self.mask > 0
-        result[inside] = self.source[inside] / base.model_albedo[inside]
+        result[inside] = self.source[inside] / np.maximum(base.model_albedo[inside], DARKEST)
         return result
 
     def reflectance(self, rows: slice | None = None) -> Map:

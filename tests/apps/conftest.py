@@ -1,0 +1,94 @@
+"""The command line, in this process and in one of its own."""
+
+import dataclasses
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+MAIN = "from cutis.apps.main import main; main()"
+
+
+@dataclasses.dataclass(frozen=True)
+class Ended:
+    """How a command ended: exit code, and what it said."""
+
+    code: int
+    out: str
+    err: str
+
+
+@pytest.fixture
+def cutis(monkeypatch, capfd):
+    """`cutis("info", path)` runs the command line in this process."""
+    from cutis.apps.main import main
+
+    def run(*arguments: object) -> Ended:
+        monkeypatch.setattr(sys, "argv", ["cutis", *map(str, arguments)])
+        capfd.readouterr()
+        with pytest.raises(SystemExit) as end:
+            main()
+        said = capfd.readouterr()
+        return Ended(int(end.value.code or 0), said.out, said.err)
+
+    return run
+
+
+@pytest.fixture
+def process():
+    """`process("info", path)` runs it in a process of its own; `before` is code to run first."""
+
+    def run(*arguments: object, before: str = "", **environment: str) -> Ended:
+        done = subprocess.run(
+            [sys.executable, "-c", f"{before}\n{MAIN}", *map(str, arguments)],
+            capture_output=True,
+            text=True,
+            encoding="utf-8",
+            env={**os.environ, "OPENBLAS_NUM_THREADS": "1", **environment},
+            timeout=120,
+        )
+        return Ended(done.returncode, done.stdout, done.stderr)
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def estimated(write_face, face_mask, tmp_path_factory) -> Path:
+    """out/ of `cutis estimate face.png`, the capture beside it; not to be written to."""
+    from cutis.apps.estimate import run
+
+    folder = tmp_path_factory.mktemp("estimated")
+    face = write_face(folder)
+    out = folder / "out"
+    run(face, out, None, "none", "none", "default", "auto", False, lambda _: None)
+    assert json.loads((out / "face.report.json").read_text("utf-8"))
+    return out
+
+
+@pytest.fixture
+def maps(estimated, tmp_path) -> Path:
+    """A copy of out/face.skin.exr with its capture where it belongs."""
+    import shutil
+
+    shutil.copytree(estimated.parent, tmp_path / "work")
+    return tmp_path / "work" / "out" / "face.skin.exr"
+
+
+def one_line(ended: Ended) -> str:
+    """The one line of an error, after everything that an error must be was checked."""
+    assert ended.code != 0
+    assert ended.out == ""
+    lines = ended.err.splitlines()
+    assert len(lines) == 1, ended.err
+    assert lines[0].startswith("cutis: ")
+    assert "Traceback" not in ended.err
+    assert "internal error" not in ended.err
+    return lines[0]
+
+
+@pytest.fixture(name="one_line")
+def _one_line():
+    return one_line

@@ -1,0 +1,124 @@
+"""`cutis edit`: what was not edited comes back, what was is stored as the capture is."""
+
+import hashlib
+
+import numpy as np
+import pytest
+
+import cutis as package
+from cutis.maps import load_maps, presets
+
+
+def digest(path):
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+@pytest.mark.parametrize("kind", ["png8", "png16", "tiff16", "exr"])
+@pytest.mark.parametrize("alpha", [False, True], ids=["RGB", "RGBA"])
+@pytest.mark.parametrize("flags", [(), ("--melanin", "x1")], ids=["no flags", "times one"])
+def test_identity_is_bit_for_bit(kind, alpha, flags, write_face, cutis, tmp_path):
+    face = write_face(tmp_path, kind, alpha)
+    skin, out = tmp_path / "face.skin.exr", tmp_path / f"same{face.suffix}"
+    package.estimate(package.read(face)).save(skin)
+    ended = cutis("edit", skin, "--source", face, *flags, "-o", out)
+    assert (ended.code, ended.err) == (0, "")
+    assert f"0 texels changed; wrote {out}" in ended.out
+    before, after = package.read(face), package.read(out)
+    assert (after.pixels.dtype, after.channels) == (before.pixels.dtype, before.channels)
+    np.testing.assert_array_equal(after.pixels, before.pixels)
+
+
+def test_flags_are_edits_after_presets(maps, cutis, tmp_path):
+    out = tmp_path / "tanned.png"
+    ended = cutis(
+        "edit", maps, "--preset", "tanning", "--preset", "blood-half", "--thickness", "-10",
+        "--blood", "+0.001", "--oxygenation", "0.9", "-o", out,
+    )  # fmt: skip
+    assert (ended.code, ended.err) == (0, "")
+    face = package.read(maps.parents[1] / "face.png")
+    edited = package.estimate(face).apply(presets.tanning).apply(presets.blood_half)
+    edited = edited.offset(blood=0.001).offset(thickness=-10).replace(oxygenation=0.9)
+    np.testing.assert_array_equal(package.read(out).pixels, edited.retouch(face).pixels)
+    lines = [line.split(",")[0] for line in ended.out.splitlines()]
+    assert lines[:-1] == [text.split(",")[0] for text in edited.edits]
+
+
+def test_clamped_texels_are_announced(maps, cutis, tmp_path):
+    ended = cutis("edit", maps, "--melanin", "x1e6", "-o", tmp_path / "dark.png")
+    assert "melanin x1e+06, 768 texels clamped to range" in ended.out
+
+
+def test_painted_mask_and_amount(maps, cutis, tmp_path):
+    from PIL import Image
+
+    paint = np.zeros((24, 32), np.uint8)
+    paint[:, 16:] = 255
+    Image.fromarray(paint).save(tmp_path / "paint.png")
+    out = tmp_path / "half.png"
+    ended = cutis(
+        "edit", maps, "--melanin", "x3", "--amount", "0.5", "--mask", tmp_path / "paint.png",
+        "-o", out,
+    )  # fmt: skip
+    assert ended.code == 0, ended.err
+    face = package.read(maps.parents[1] / "face.png")
+    edited = package.estimate(face).multiply(melanin=2, where=paint / 255)
+    np.testing.assert_array_equal(package.read(out).pixels, edited.retouch(face).pixels)
+    np.testing.assert_array_equal(package.read(out).pixels[:, :16], face.pixels[:, :16])
+
+
+def test_quiet(maps, cutis, tmp_path):
+    ended = cutis("edit", maps, "--melanin", "x2", "-o", tmp_path / "a.png", "-q")
+    assert (ended.code, ended.out, ended.err) == (0, "", "")
+
+
+def test_saved_maps_can_be_edited_again(maps, cutis, tmp_path):
+    """From another folder, to the colours of both edits at once."""
+    (tmp_path / "deep" / "er").mkdir(parents=True)
+    tanned, once = tmp_path / "deep" / "er" / "tanned.exr", tmp_path / "once.png"
+    first = cutis(
+        "edit", maps, "--melanin", "x1.4", "--save-maps", tanned, "-o", tmp_path / "a.png"
+    )
+    assert first.code == 0, first.err
+    skin = load_maps(tanned)
+    assert skin.edits == ("melanin x1.4",)
+    assert skin.provenance["source"] == "../../work/face.png"
+    before = load_maps(maps)
+    assert skin.provenance["source_sha256"] == before.provenance["source_sha256"]
+    assert (skin.model, skin.calibration) == (before.model, before.calibration)
+
+    twice = tmp_path / "twice.png"
+    again = cutis("edit", tanned, "--blood", "x0.5", "-o", twice)
+    assert (again.code, again.err) == (0, "")
+    assert again.out.splitlines()[:2] == ["melanin x1.4", "blood x0.5"]
+    assert cutis("edit", maps, "--melanin", "x1.4", "--blood", "x0.5", "-o", once).code == 0
+    np.testing.assert_array_equal(package.read(twice).pixels, package.read(once).pixels)
+    unchanged = cutis("edit", tanned, "-o", tmp_path / "b.png")
+    assert unchanged.code == 0
+    assert digest(tmp_path / "a.png") == digest(tmp_path / "b.png")
+
+
+def test_the_capture_is_never_overwritten(maps, cutis, one_line, tmp_path):
+    face = maps.parents[1] / "face.png"
+    before = digest(face), digest(maps)
+    (tmp_path / "link.png").symlink_to(face)
+    for out in (face, face.parent / "out" / ".." / "face.png", tmp_path / "link.png"):
+        assert "is the capture itself" in one_line(cutis("edit", maps, "--blood", "x2", "-o", out))
+    new = tmp_path / "new.exr"
+    line = one_line(cutis("edit", maps, "--blood", "x2", "-o", new, "--save-maps", face))
+    assert "is the capture itself" in line
+    assert "is a file of maps" in one_line(cutis("edit", maps, "--blood", "x2", "-o", maps))
+    line = one_line(cutis("edit", maps, "--blood", "x2", "-o", new, "--save-maps", new))
+    assert "is a file of maps" in line
+    assert (digest(face), digest(maps)) == before
+    assert not new.exists()
+
+
+def test_a_capture_that_changed_or_went(maps, cutis, one_line, tmp_path):
+    face = maps.parents[1] / "face.png"
+    out = tmp_path / "new.png"
+    face.rename(tmp_path / "other.png")
+    assert "is missing; give it with --source" in one_line(cutis("edit", maps, "-o", out))
+    assert cutis("edit", maps, "--source", tmp_path / "other.png", "-o", out, "-q").code == 0
+    face.write_bytes((tmp_path / "other.png").read_bytes() + b"\n")
+    assert "has changed since" in one_line(cutis("edit", maps, "-o", tmp_path / "b.png"))
+    assert not (tmp_path / "b.png").exists()

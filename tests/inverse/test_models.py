@@ -1,0 +1,38 @@
+"""Models by name."""
+
+import numpy as np
+import pytest
+
+from cutis.albedo import albedo_space
+from cutis.errors import CutisError
+from cutis.inverse import MODELS, load_model
+from cutis.optics import PARAMETERS, from_coordinates
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_parameters_are_in_range_for_any_colour(name):
+    colours = [[0, 0, 0], [1, 1, 1], [0, 0, 1], [9, 7, 5], [-0.1, 0.2, 0.1], [0.5, 0.3, 0.2]]
+    skins = load_model(name).encode(colours)
+    assert skins.shape == (6, 5)
+    for i, known in enumerate(PARAMETERS):
+        assert np.all(skins[:, i] >= np.float32(known.low))
+        assert np.all(skins[:, i] <= np.float32(known.high))
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_loop_closes_on_skins(name):
+    u = np.random.default_rng(0).uniform(0.15, 0.6, (2, 100, 5))
+    rgb = albedo_space().rgb(from_coordinates(u))
+    model = load_model(name)
+    assert np.abs(model.decode(model.encode(rgb)) - rgb).mean() < 2e-3
+
+
+def test_default_decodes_through_the_exact_space():
+    skins = from_coordinates(np.random.default_rng(1).random((50, 5)))
+    np.testing.assert_array_equal(load_model().decode(skins), albedo_space().rgb(skins))
+
+
+@pytest.mark.parametrize("name", ["nobody", "missing.safetensors", ""])
+def test_unknown_names_are_refused(name):
+    with pytest.raises(CutisError, match="unknown model"):
+        load_model(name)

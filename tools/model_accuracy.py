@@ -1,0 +1,89 @@
+"""Rewrites the tables of docs/models.md: run `python tools/model_accuracy.py`.
+
+Closed loop and smoothness of every model on the bundled capture and on every texture of the shared
+data (skipped, saying so, where it is absent), and recovery of uniform skins.
+"""
+
+from pathlib import Path
+
+import numpy as np
+from pages import rewrite
+from rich.progress import track
+
+from cutis import estimate, read, read_mask
+from cutis.albedo import albedo_space, uniform
+from cutis.colour import delta_e
+from cutis.inverse import load_model
+from cutis.maps import report
+from cutis.optics import NAMES, to_coordinates
+
+ROOT = Path(__file__).parents[1]
+SHARED = ROOT.parent / "shared" / "data" / "albedo"
+MODELS = ("default", "aliaga2022")
+ORDER = ("melanin", "blood", "thickness", "oxygenation", "eumelanin")
+SKINS = 120_000
+
+
+def textures() -> list[tuple[Path, Path | None]]:
+    """Capture and mask of every texture at hand, the bundled one first."""
+    examples = ROOT / "examples"
+    found = [(examples / "bioskin_capture1.jpg", examples / "bioskin_capture1_mask.jpg")]
+    head = SHARED / "makehuman_head_mask.png"
+    for path in sorted(SHARED.glob("*.*g")):
+        if "mask" not in path.name and path.name != found[0][0].name:
+            found.append((path, head if path.name.startswith("makehuman") else None))
+    if not SHARED.is_dir():
+        print(f"{SHARED.name} of the shared data is absent: only the bundled capture")
+    return found
+
+
+def closed_loop() -> tuple[str, str]:
+    """Colour errors per texture, and smoothness on the bundled capture."""
+    rows = ["| texture | model | gains | MSE | ΔE00 mean | p95 | out of gamut | ITA |",
+            "|---|---|---|---|---|---|---|---|"]  # fmt: skip
+    smooth = ["| model | " + " | ".join(ORDER) + " |", "|---|---|---|---|---|---|"]
+    for path, mask_path in track(textures(), "closed loop"):
+        face = read(path)
+        mask = None if mask_path is None else read_mask(mask_path, face.shape)
+        for white in ("auto", "none"):
+            for model in MODELS:
+                found = report(estimate(face, mask, white=white, model=model))
+                gains = " ".join(f"{g:.2f}" for g in found["calibration"]["gains"])
+                colour = found.get("colour")
+                if colour is None:
+                    rows.append(f"| {path.stem} | {model} | {gains} | no skin colour | | | | |")
+                    continue
+                rows.append(
+                    f"| {path.stem} | {model} | {gains} | {colour['mse']:.1e} "
+                    f"| {colour['delta_e_mean']:.3f} | {colour['delta_e_p95']:.3f} "
+                    f"| {100 * colour['out_of_gamut']:.2f} % | {colour['ita_median']:.0f}° |"
+                )
+                if white == "auto" and path.stem == "bioskin_capture1":
+                    cells = " | ".join(f"{found['smoothness'][n]:.2f}" for n in ORDER)
+                    smooth.append(f"| {model} | {cells} |")
+    return "\n".join(rows), "\n".join(smooth)
+
+
+def recovery() -> str:
+    """R² of each parameter, in network coordinates, over uniform validation skins."""
+    skins = uniform(SKINS, 2023)
+    truth = to_coordinates(skins)
+    rgb = albedo_space().rgb(skins)
+    rows = ["| model | " + " | ".join(ORDER) + " | ΔE00 mean | p95 |", "|---|" + "---|" * 7]
+    for name in MODELS:
+        model = load_model(name)
+        found = model.encode(rgb)
+        r2 = 1 - ((to_coordinates(found) - truth) ** 2).mean(0) / truth.var(0)
+        errors = delta_e(model.decode(found), rgb)
+        cells = " | ".join(f"{r2[NAMES.index(n)]:.3f}" for n in ORDER)
+        rows.append(f"| {name} | {cells} | {errors.mean():.3f} | {np.percentile(errors, 95):.3f} |")
+    return "\n".join(rows)
+
+
+def main() -> None:
+    loop, smooth = closed_loop()
+    rewrite("models.md", loop=loop, smooth=smooth, recovery=recovery())
+
+
+if __name__ == "__main__":
+    main()
