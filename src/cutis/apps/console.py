@@ -1,5 +1,6 @@
 """What commands say: progress with time left, tables, one clear line for errors."""
 
+import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -18,9 +19,11 @@ class Steps:
         self._progress = progress
         self._task = progress.add_task("", total=total)
         self._begun = False
+        self.interrupted = False
 
     def step(self, name: str) -> None:
         """Ends the step before and names the one that begins."""
+        self._check()
         if self._begun:
             self._progress.advance(self._task)
         self._begun = True
@@ -28,7 +31,12 @@ class Steps:
 
     def at(self, done: int, total: int, name: str) -> None:
         """Sets the whole bar: `done` of `total`."""
+        self._check()
         self._progress.update(self._task, completed=done, total=total, description=name)
+
+    def _check(self) -> None:
+        if self.interrupted:
+            raise KeyboardInterrupt
 
 
 @contextmanager
@@ -43,4 +51,16 @@ def steps(total: int, quiet: bool) -> Iterator[Steps]:
     )
     hidden = quiet or not err.is_terminal
     with Progress(*columns, console=err, transient=True, disable=hidden) as progress:
-        yield Steps(progress, total)
+        running = Steps(progress, total)
+
+        def interrupt(*_: object) -> None:
+            # Python drops exceptions raised inside callbacks of libraries, compilers among them:
+            # what was dropped is raised again at the next step.
+            running.interrupted = True
+            raise KeyboardInterrupt
+
+        before = signal.signal(signal.SIGINT, interrupt)
+        try:
+            yield running
+        finally:
+            signal.signal(signal.SIGINT, before)

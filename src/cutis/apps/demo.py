@@ -22,15 +22,15 @@ def demo(
 
     Example: cutis demo -o demo
     """
-    import cutis
     from cutis.apps import estimate
     from cutis.apps.console import out, steps
     from cutis.apps.page import write_page
     from cutis.apps.previews import write_colour
     from cutis.errors import CutisError
     from cutis.maps import presets
+    from cutis.textures import write_texture
 
-    examples = Path(cutis.__file__).parents[2] / "examples"
+    examples = Path(__file__).parents[3] / "examples"
     if not (examples / CAPTURE).is_file():
         raise CutisError(
             "the demo needs a clone of the repository; for your own face: cutis estimate FILE"
@@ -43,7 +43,7 @@ def demo(
         stem = output / Path(CAPTURE).stem
         progress.step("tanning")
         tanned = skin.apply(presets.tanning)
-        cutis.write(tanned.retouch(texture), f"{stem}.tanned.png")
+        write_texture(tanned.retouch(texture), f"{stem}.tanned.png")
         progress.step("writing the page")
         assert skin.source is not None
         write_colour(Path(f"{stem}.source.preview.png"), skin.source)

@@ -25,9 +25,9 @@ INTERRUPTED = 130
 
 def _version(wanted: bool) -> None:
     if wanted:
-        from cutis import __version__
+        from importlib.metadata import version
 
-        typer.echo(f"cutis {__version__}")
+        typer.echo(f"cutis {version('cutis')}")
         raise typer.Exit
 
 
