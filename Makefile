@@ -33,7 +33,7 @@ types: $(FULL) ## static types
 	$(BIN)/mypy
 
 docs: $(FULL) ## build the documentation into site/
-	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
 
 format: $(FULL) ## rewrite the code in the project's style
 	$(BIN)/ruff check --fix .

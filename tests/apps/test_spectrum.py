@@ -24,8 +24,8 @@ def test_one_skin(cutis, tmp_path):
     assert [float(row[0]) for row in rows] == list(range(380, 781, 10))
     expected = albedo_space().reflectance(skin({"melanin": 0.02, "blood": 0.01, "thickness": 80}))
     np.testing.assert_allclose([float(row[1]) for row in rows], expected, atol=1e-6)
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["skin.csv", "skin.png"]
-    assert f"wrote {out} and {out.with_suffix('.png')}" in ended.out
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["skin.csv", "skin.plot.png"]
+    assert f"wrote {out} and {out.with_suffix('.plot.png')}" in ended.out
 
 
 def test_without_output_it_is_printed(cutis, monkeypatch, tmp_path):

@@ -5,8 +5,17 @@ import json
 import pytest
 
 
+@pytest.fixture(autouse=True, scope="module")
+def one_thread():
+    """Threads wait long for cores that others keep busy."""
+    torch = pytest.importorskip("torch")
+    before = torch.get_num_threads()
+    torch.set_num_threads(1)
+    yield
+    torch.set_num_threads(before)
+
+
 def test_smoke(cutis, tmp_path, one_line):
-    pytest.importorskip("torch")
     out = tmp_path / "run"
     ended = cutis("train", "smoke", "--epochs", "1", "-o", out)
     assert (ended.code, ended.err) == (0, "")
@@ -20,6 +29,5 @@ def test_smoke(cutis, tmp_path, one_line):
 
 
 def test_quiet(cutis, tmp_path):
-    pytest.importorskip("torch")
     ended = cutis("train", "smoke", "--epochs", "1", "-o", tmp_path, "-q")
     assert (ended.code, ended.out, ended.err) == (0, "", "")

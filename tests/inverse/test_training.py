@@ -19,13 +19,13 @@ torch = pytest.importorskip("torch")
 from cutis.inverse.training import RECIPES, Recipe, train  # noqa: E402 - needs PyTorch
 
 SMALL = Recipe(name="small", pairs=6000, epochs=12, batch=256, learning_rate=3e-3)
-TINY = Recipe(name="tiny", pairs=600, epochs=60, batch=32, learning_rate=1e-3, schedule="cosine")
+TINY = Recipe(name="tiny", pairs=600, epochs=60, batch=96, learning_rate=1e-3, schedule="cosine")
 """Long enough to be killed in mid-run."""
 
 
-@pytest.fixture(autouse=True)
+@pytest.fixture(autouse=True, scope="module")
 def one_thread():
-    """Sums come in the same order in every process."""
+    """Sums come in the same order in every process, and threads do not wait for busy cores."""
     before = torch.get_num_threads()
     torch.set_num_threads(1)
     yield
@@ -54,8 +54,8 @@ def test_it_learns(run):
     assert set(validation["parameter_r2"]) == set(NAMES)
     assert validation["parameter_r2"]["melanin"] > 0.9
     assert validation["parameter_r2"]["blood"] > 0.3
-    assert validation["decoder_l1"] < 0.02
-    assert validation["cycle_l1"] < 0.02
+    assert validation["decoder_l1"] < 0.03
+    assert validation["cycle_l1"] < 0.03
 
 
 def test_it_writes_what_it_promises(run):

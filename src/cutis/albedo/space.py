@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from cutis.albedo.spectral_table import CELLS, SpectralTable, spectral_table
 from cutis.colour import spectrum_to_rgb
-from cutis.optics import ALIAGA2022, WAVELENGTHS, Tissue, chromophores
+from cutis.optics import ALIAGA2022, WAVELENGTHS, Tissue
 
 BAND = 1 << 18
 """Texels converted at a time."""
@@ -25,12 +25,12 @@ class AlbedoSpace:
         tissue = table.tissue
         deoxygenated, oxygenated = tissue.whole_blood(WAVELENGTHS)
         spectra = [
-            chromophores.eumelanin(WAVELENGTHS),
-            chromophores.pheomelanin(WAVELENGTHS),
+            tissue.eumelanin(WAVELENGTHS),
+            tissue.pheomelanin(WAVELENGTHS),
             tissue.epidermis_background(WAVELENGTHS),
             deoxygenated,
             oxygenated,
-            chromophores.baseline(WAVELENGTHS),
+            tissue.baseline(WAVELENGTHS),
         ]
         self.tissue = tissue
         self.table = table

@@ -67,7 +67,6 @@ def build(
     `progress(done, total)` is called after each wavelength.
     """
     low, high = axis_ranges(tissue)
-    index = tissue.refractive_index if tissue.boundary == "fresnel" else 1.0
 
     def solve(i: int) -> NDArray[np.float64]:
         axes = [low[i, a] + _chebyshev(NODES[a]) * (high[i, a] - low[i, a]) for a in range(3)]
@@ -78,7 +77,7 @@ def build(
             float(tissue.scattering(WAVELENGTHS)[i]),
             float(tissue.anisotropy(WAVELENGTHS)[i]),
             dimension=tissue.dimension,
-            refractive_index=index,
+            refractive_index=tissue.outer_index,
             count=ORDINATES,
         )
 

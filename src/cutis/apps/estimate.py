@@ -114,6 +114,9 @@ def say(results: dict[str, Any], skin: "SkinMaps") -> None:
         f"{colour['delta_e_mean']:.3f}, 95 % {colour['delta_e_p95']:.3f}, "
         f"out of gamut {100 * colour['out_of_gamut']:.1f} %, ITA {colour['ita_median']:.0f}°"
     )
-    out.print("RGB fixes melanin and blood; trust thickness, eumelanin and oxygenation less.")
+    out.print(
+        "On skin colours RGB fixes melanin and blood well, thickness less, and says little of "
+        "eumelanin and oxygenation."
+    )
     if colour["out_of_gamut"] > 0.05 and skin.calibration.origin != "auto":
         out.print("Many texels are out of gamut: try --white auto, or a tighter --mask.")

@@ -46,7 +46,7 @@ def write_page(path: Path, stem: Path, results: dict[str, Any], credit: str) -> 
 <h2>Numbers</h2>
 <table><tr><th>map</th><th>unit</th><th>5 %</th><th>median</th><th>95 %</th></tr>{rows}</table>
 <p>{error} Gains found for red, green, blue: {gains}.</p>
-<p>RGB fixes melanin and blood; thickness, melanin type and oxygenation are most probable values,
+<p>RGB fixes melanin and blood well; thickness, melanin type and oxygenation are probable values,
 not measurements. Not a medical device.</p><p><small>{html.escape(credit)}</small></p>"""
     page = (
         '<!doctype html><html lang="en"><meta charset="utf-8">'

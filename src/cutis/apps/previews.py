@@ -44,6 +44,7 @@ def write_previews(skin: SkinMaps, stem: Path) -> None:
             f"{known.meaning}{unit}",
             COLOUR_MAPS[known.name],
             (float(low), float(high)),
+            known.root,
         )
     if skin.source is not None:
         from cutis.colour import delta_e
@@ -77,7 +78,10 @@ def _figure(
     label: str,
     colour_map: str,
     limits: tuple[float, float],
+    root: int = 1,
 ) -> None:
+    """A colour-mapped picture with its scale bar, even in the `root`-th root of the values."""
+    from matplotlib.colors import PowerNorm
     from matplotlib.figure import Figure
 
     height, width = values.shape
@@ -87,7 +91,10 @@ def _figure(
     axes.set_axis_off()
     axes.set_facecolor("0.5")
     shown = axes.imshow(
-        values, cmap=colour_map, vmin=low, vmax=max(high, low + 1e-9), interpolation="nearest"
+        values,
+        cmap=colour_map,
+        norm=PowerNorm(1 / root, low, max(high, low + 1e-9)),
+        interpolation="nearest",
     )
     bar = figure.add_axes(((width + 20) / (width + 130), 0.08, 22 / (width + 130), 0.84))
     figure.colorbar(shown, cax=bar, label=label)

@@ -58,6 +58,8 @@ def spectrum(
             [*cells, *(f"{r:.6f}" for r in values)]
             for cells, values in zip(table, spectra, strict=True)
         ]
+    if output is not None and skins is not None and output.resolve() == skins.resolve():
+        raise CutisError(f"{output.name} is the CSV of skins itself; write to another name")
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerows([header, *rows])
@@ -68,9 +70,10 @@ def spectrum(
 
     with replacing(output) as partial:
         partial.write_text(text.getvalue(), encoding="utf-8")
-    _plot(output.with_suffix(".png"), WAVELENGTHS, spectra)
+    plot = output.with_suffix(".plot.png")  # never the name of a texture beside it
+    _plot(plot, WAVELENGTHS, spectra)
     if not quiet:
-        typer.echo(f"wrote {output} and {output.with_suffix('.png')}")
+        typer.echo(f"wrote {output} and {plot}")
 
 
 def _read(path: Path) -> tuple[list[str], list[list[str]], "NDArray[np.float64]"]:

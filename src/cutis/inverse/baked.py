@@ -1,7 +1,7 @@
 """The most probable skin of every colour, baked into a three-dimensional table.
 
 Whatever computes it, an inverse from RGB is a function of three numbers. The table holds the fit
-of `fit.py` around the estimate of an encoder as uniform cubic B-splines (their values are twice differentiable, so
+of `fit.py` around the estimate of an encoder as uniform cubic B-splines (twice differentiable, so
 maps are as smooth as the colours) over
 
     a = G^¼,   b = R / (R + G),   c = B / (B + G),

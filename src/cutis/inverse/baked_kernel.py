@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numba import njit, prange
 
-from cutis.albedo.spline import locate_cell, cubic_weights
+from cutis.albedo.spline import cubic_weights, locate_cell
 
 BLOCK = 1024
 """Texels that one task works on."""

@@ -7,7 +7,8 @@ which the model explains the masked skin, with a pull towards 1: it minimises
 
 r being the relative colour error of the best skin. The first term counts texels out of the
 albedo space and saturates, so that clothes and hair inside the mask do not decide. Nothing pulls
-towards a skin tone. Gains are undone on output, so colours come back as they came.
+towards a skin tone; the price is that under-exposure cannot be found, since darker colours are
+skins too. Gains are undone on output, so colours come back as they came.
 """
 
 from collections.abc import Sequence
@@ -20,13 +21,16 @@ from numpy.typing import ArrayLike, NDArray
 from cutis.albedo import albedo_space
 from cutis.errors import CutisError
 from cutis.inverse.fit import fit
+from cutis.optics import from_coordinates
 
-SAMPLE = 1500
+SAMPLE = 800
 """Texels that gains are judged on."""
 SCALE = 0.02
 """ρ, the relative colour error at which a texel counts half as out of the albedo space."""
 PULL = 0.3
 """Weight of the pull of gains towards 1."""
+EXPOSURES = (0.0, 0.3, -0.3, -0.6, -0.9, -1.2, -1.5)
+"""Logarithms of the exposures that the search may start from."""
 LIMITS = (0.1, 10.0)
 """Gains outside are refused."""
 
@@ -64,7 +68,7 @@ def calibrate(rgb: ArrayLike, white: White = None, exposure: Exposure = None) ->
         fixed = fixed * _checked([exposure], 1, "exposure")
     for name, value in (("white", white), ("exposure", exposure)):
         if isinstance(value, str) and value not in ("none", "auto"):
-            raise CutisError(f"--{name} must be none, auto or numbers, not {value!r}")
+            raise CutisError(f"{name} must be none, auto or numbers, not {value!r}")
     if white != "auto" and exposure != "auto":
         red, green, blue = (float(g) for g in fixed)
         return Calibration((red, green, blue), "given" if np.any(fixed != 1) else "none")
@@ -84,7 +88,7 @@ def _checked(values: Sequence[float], count: int, name: str) -> NDArray[np.float
     low, high = LIMITS
     if gains.shape != (count,) or not np.all((gains >= low) & (gains <= high)):
         numbers = "one number" if count == 1 else "three numbers (red,green,blue)"
-        raise CutisError(f"--{name} takes none, auto or {numbers} from {low:g} to {high:g}")
+        raise CutisError(f"{name} takes none, auto or {numbers} from {low:g} to {high:g}")
     return gains
 
 
@@ -100,27 +104,32 @@ def _search(rgb: NDArray[np.floating], directions: NDArray[np.float64]) -> NDArr
     space = albedo_space()
     start = np.array([0.35, 0.4, 0.4, 0.5, 0.5])
 
-    def cost(x: NDArray[np.float64]) -> float:
+    def cost(x: NDArray[np.floating]) -> float:
         log_gains = x @ directions
         colours = sample * np.exp(log_gains).astype(np.float32)
-        explained = space.rgb(_skins(fit(space, colours, start, np.eye(5), 3e-3, iterations=15)))
+        skins = fit(space, colours, start, np.eye(5), 3e-3, iterations=10)
+        explained = space.rgb(from_coordinates(skins))
         error = (explained - colours) / (colours.mean(axis=1, keepdims=True) + 0.01)
         r2 = (error.astype(np.float64) ** 2).sum(axis=1)
         return float(np.mean(r2 / (r2 + SCALE**2)) + PULL * np.sum(log_gains**2))
 
+    # far from the space every texel is unexplained and the cost is flat, so the search starts at
+    # the best of a few common exposures
     size = len(directions)
+    common = np.linalg.lstsq(directions.T, np.ones(3), rcond=None)[0]
+    start_at = min((exposure * common for exposure in EXPOSURES), key=cost)
     simplex = np.vstack([np.zeros(size), 0.15 * np.eye(size)])
     best = min(
         (
             minimize(
                 cost,
-                simplex[0],
+                start_at,
                 method="Nelder-Mead",
                 options={
-                    "initial_simplex": side * simplex,
-                    "xatol": 1e-3,
-                    "fatol": 1e-5,
-                    "maxfev": 120,
+                    "initial_simplex": start_at + side * simplex,
+                    "xatol": 4e-3,
+                    "fatol": 1e-4,
+                    "maxfev": 80,
                 },
             )
             for side in (1.0, -1.0)
@@ -128,9 +137,3 @@ def _search(rgb: NDArray[np.floating], directions: NDArray[np.float64]) -> NDArr
         key=lambda result: result.fun,
     )
     return np.exp(best.x @ directions)
-
-
-def _skins(coordinates: NDArray[np.float32]) -> NDArray[np.floating]:
-    from cutis.optics import from_coordinates
-
-    return from_coordinates(coordinates)

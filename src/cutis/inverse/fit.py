@@ -19,12 +19,12 @@ from cutis.optics import PARAMETERS
 def logit(coordinates: ArrayLike) -> NDArray[np.float32]:
     """Coordinates u (any shape) → unbounded z; u is kept 1e-4 away from 0 and 1."""
     u = np.clip(np.asarray(coordinates, dtype=np.float32), 1e-4, 1 - 1e-4)
-    return np.log(u / (1 - u))
+    return np.asarray(np.log(u / (1 - u)), dtype=np.float32)
 
 
 def logistic(logits: ArrayLike) -> NDArray[np.float32]:
     """Unbounded z (any shape) → coordinates u ∈ (0, 1)."""
-    return 1 / (1 + np.exp(-np.asarray(logits, dtype=np.float32)))
+    return np.asarray(1 / (1 + np.exp(-np.asarray(logits, dtype=np.float32))), dtype=np.float32)
 
 
 def fit(

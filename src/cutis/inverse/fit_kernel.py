@@ -31,9 +31,8 @@ def _evaluate(
     for p in range(5):
         u = np.float32(1) / (np.float32(1) + np.exp(-z[p]))
         root = root_low[p] + u * root_span[p]
-        chain = power[p] * x[p] / root * root_span[p] * u * (np.float32(1) - u)
-        if power[p] == 1:
-            chain = root_span[p] * u * (np.float32(1) - u)
+        outer = power[p] * root ** (power[p] - np.float32(1))  # d root^power / d root
+        chain = outer * root_span[p] * u * (np.float32(1) - u)
         for c in range(3):
             slope[c, p] *= chain * weight
     for c in range(3):
@@ -79,8 +78,10 @@ def fit_kernel(
     colours: Any, centres: Any, weights: Any, precision: Any, iterations: Any,
     root_low: Any, root_span: Any, power: Any, model: Any, out: Any
 ) -> None:  # fmt: skip
-    """Fills out (n, 5) with logits that minimise |weight (RGB − colour)|² + prior, by
-    Levenberg–Marquardt from the prior's centres (n, 5)."""
+    """Fills out (n, 5) with the best logits, by Levenberg–Marquardt from `centres` (n, 5).
+
+    Minimises |weight (RGB − colour)|² + (z − centre)ᵀ precision (z − centre) of each colour.
+    """
     n = colours.shape[0]
     for block in prange((n + BLOCK - 1) // BLOCK):
         _fit_block(
@@ -102,9 +103,7 @@ def _fit_block(
         z, centre, colour, weight = out[row], centres[row], colours[row], weights[row]
         z[:] = centre
         damping = 1e-3
-        _evaluate(
-            z, weight, colour, root_low, root_span, power, model, x, rgb, slope, residual
-        )
+        _evaluate(z, weight, colour, root_low, root_span, power, model, x, rgb, slope, residual)
         cost = _cost(z, centre, precision, residual)
         for _ in range(iterations):
             for p in range(5):

@@ -98,6 +98,29 @@ def load_maps(path: str | os.PathLike[str]) -> SkinMaps:
     )
 
 
+def load_skin(
+    path: str | os.PathLike[str], source: str | os.PathLike[str] | None = None
+) -> SkinMaps:
+    """Skin maps with their capture: `source`, or the one that their header names if it is there.
+
+    With its capture, `albedo()` gives the capture with the edits in it; without, the model alone.
+    Raises CutisError when `source` is missing or is not the capture that the maps were made from.
+    """
+    path = Path(path)
+    skin = load_maps(path)
+    try:
+        capture = find_source(skin, path, None if source is None else Path(source))
+    except CutisError:
+        if source is not None:
+            raise
+        return skin
+    encoding = skin.provenance.get("source_encoding")
+    texture = textures.read_texture(capture, "srgb" if encoding == "srgb" else "linear")
+    colours = texture.linear()
+    original = skin.original and replace(skin.original, source=colours)
+    return replace(skin, source=colours, original=original)
+
+
 def _checked(
     path: Path, values: NDArray[np.float32], known: Parameter, mask: NDArray[np.float32]
 ) -> NDArray[np.float32]:

@@ -209,7 +209,9 @@ class SkinMaps:
         return result
 
     def reflectance(self, rows: slice | None = None) -> Map:
-        """(H, W, 41) reflectance of the model at `optics.WAVELENGTHS`, 0 off the mask.
+        """(H, W, 41) reflectance in the exact albedo space at `optics.WAVELENGTHS`, 0 off the mask.
+
+        Of the maps alone: neither calibration nor what the model does not explain is in it.
 
         A whole 2048² face takes 0.7 GB; give `rows` to go in bands.
         """

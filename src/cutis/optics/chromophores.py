@@ -49,19 +49,25 @@ def _interpolate(
     return np.interp(lam, nodes, values, right=0.0 if zero_past_end else None)
 
 
-def eumelanin(wavelength: ArrayLike) -> NDArray[np.float64]:
-    """Eumelanin in the melanosome, 6.6e11 λ^−3.33 cm⁻¹ [donner2006, after jacques1991]."""
-    return 6.6e11 * np.asarray(wavelength, dtype=np.float64) ** -3.33
+def eumelanin(
+    wavelength: ArrayLike, scale: float = 6.6e11, power: float = -3.33
+) -> NDArray[np.float64]:
+    """Eumelanin in the melanosome, scale · λ^power cm⁻¹ [donner2006, after jacques1991]."""
+    return scale * np.asarray(wavelength, dtype=np.float64) ** power
 
 
-def pheomelanin(wavelength: ArrayLike) -> NDArray[np.float64]:
-    """Pheomelanin in the melanosome, 2.9e15 λ^−4.75 cm⁻¹ [donner2006, after sarna2006]."""
-    return 2.9e15 * np.asarray(wavelength, dtype=np.float64) ** -4.75
+def pheomelanin(
+    wavelength: ArrayLike, scale: float = 2.9e15, power: float = -4.75
+) -> NDArray[np.float64]:
+    """Pheomelanin in the melanosome, scale · λ^power cm⁻¹ [donner2006, after sarna2006]."""
+    return scale * np.asarray(wavelength, dtype=np.float64) ** power
 
 
-def baseline(wavelength: ArrayLike) -> NDArray[np.float64]:
-    """Bloodless, melanin-free tissue, 7.84e8 λ^−3.255 cm⁻¹ [saidi1992]."""
-    return 7.84e8 * np.asarray(wavelength, dtype=np.float64) ** -3.255
+def baseline(
+    wavelength: ArrayLike, scale: float = 7.84e8, power: float = -3.255
+) -> NDArray[np.float64]:
+    """Bloodless, melanin-free tissue, scale · λ^power cm⁻¹ [saidi1992]."""
+    return scale * np.asarray(wavelength, dtype=np.float64) ** power
 
 
 def oxyhemoglobin(wavelength: ArrayLike, concentration: float = 150.0) -> NDArray[np.float64]:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from cutis.errors import CutisError
 from cutis.optics import chromophores
 
 WAVELENGTHS = np.arange(380.0, 781.0, 10.0)
@@ -21,6 +22,12 @@ class Tissue:
     """Constants shared by all skins of a model. Concentrations in g/L, scattering in cm⁻¹."""
 
     name: str
+    eumelanin_scale: float = 6.6e11
+    eumelanin_power: float = -3.33
+    pheomelanin_scale: float = 2.9e15
+    pheomelanin_power: float = -4.75
+    baseline_scale: float = 7.84e8
+    baseline_power: float = -3.255
     hemoglobin: float = 150.0
     bilirubin: float = 0.05
     beta_carotene_epidermis: float = 2.1e-4
@@ -33,6 +40,33 @@ class Tissue:
     refractive_index: float = 1.4
     dimension: int = 2
     boundary: str = "matched"
+
+    def __post_init__(self) -> None:
+        if self.dimension not in (2, 3):
+            raise CutisError(f"tissue {self.name}: dimension must be 2 or 3, not {self.dimension}")
+        if self.boundary not in ("matched", "fresnel"):
+            raise CutisError(
+                f"tissue {self.name}: boundary must be matched or fresnel, not {self.boundary!r}"
+            )
+        if not 0 <= self.rayleigh_fraction <= 1:
+            raise CutisError(f"tissue {self.name}: rayleigh_fraction must lie in 0 to 1")
+
+    @property
+    def outer_index(self) -> float:
+        """Refractive index that light meets on its way out: 1 where the boundary is matched."""
+        return self.refractive_index if self.boundary == "fresnel" else 1.0
+
+    def eumelanin(self, wavelength: ArrayLike) -> NDArray[np.float64]:
+        """μa of eumelanin in the melanosome, cm⁻¹."""
+        return chromophores.eumelanin(wavelength, self.eumelanin_scale, self.eumelanin_power)
+
+    def pheomelanin(self, wavelength: ArrayLike) -> NDArray[np.float64]:
+        """μa of pheomelanin in the melanosome, cm⁻¹."""
+        return chromophores.pheomelanin(wavelength, self.pheomelanin_scale, self.pheomelanin_power)
+
+    def baseline(self, wavelength: ArrayLike) -> NDArray[np.float64]:
+        """μa of tissue without melanin and blood, cm⁻¹."""
+        return chromophores.baseline(wavelength, self.baseline_scale, self.baseline_power)
 
     def anisotropy(self, wavelength: ArrayLike) -> NDArray[np.float64]:
         """g = ⟨cos θ⟩ of both layers; 0.73 at 380 nm to 0.85 at 780 nm [vangemert1989]."""
@@ -57,7 +91,7 @@ class Tissue:
         v_m = np.asarray(melanin, dtype=np.float64)[..., None]
         phi = np.asarray(eumelanin, dtype=np.float64)[..., None]
         lam = np.atleast_1d(wavelength)
-        pigment = phi * chromophores.eumelanin(lam) + (1 - phi) * chromophores.pheomelanin(lam)
+        pigment = phi * self.eumelanin(lam) + (1 - phi) * self.pheomelanin(lam)
         return v_m * pigment + (1 - v_m) * self.epidermis_background(lam)
 
     def dermis_absorption(
@@ -69,12 +103,12 @@ class Tissue:
         lam = np.atleast_1d(wavelength)
         deoxygenated, oxygenated = self.whole_blood(lam)
         whole = oxy * oxygenated + (1 - oxy) * deoxygenated
-        return v_b * whole + (1 - v_b) * chromophores.baseline(lam)
+        return v_b * whole + (1 - v_b) * self.baseline(lam)
 
     def epidermis_background(self, wavelength: ArrayLike) -> NDArray[np.float64]:
         """μa of epidermis without melanin, cm⁻¹: β-carotene and baseline."""
         carotene = chromophores.beta_carotene(wavelength, self.beta_carotene_epidermis)
-        return carotene + chromophores.baseline(wavelength)
+        return carotene + self.baseline(wavelength)
 
     def whole_blood(self, wavelength: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """μa of fully deoxygenated and fully oxygenated blood, cm⁻¹, pigments in it included."""

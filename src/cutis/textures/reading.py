@@ -6,6 +6,7 @@ from typing import Literal
 
 from cutis.textures.decoding import check_finite, decode, is_palette, photometric
 from cutis.textures.headers import PNG_PALETTE, png_colour_type
+from cutis.textures.primaries import foreign_space
 from cutis.textures.problem import problem
 from cutis.textures.texture import Encoding, Texture, colour_channels
 
@@ -21,7 +22,9 @@ def read_texture(
 
     Raises CutisError, one line that names the file, for anything that is not a whole RGB image of
     at most 32768 × 32768 texels: missing, damaged, grey, palette, CMYK, deep, NaN or infinite
-    colours, more than memory holds. Colours below 0 or above 1 are fine: see `out_of_range`.
+    colours, more than memory holds; and, unless `encoding` is given, for files that say that their
+    RGB is not sRGB's (chromaticities, ICC profile). Colours below 0 or above 1 are fine: see
+    `out_of_range`.
     """
     path = Path(path)
     decoded = decode(path)
@@ -37,6 +40,13 @@ def read_texture(
     for column in rgb if alpha is None else (*rgb, alpha):
         check_finite(path, pixels[..., column : column + 1])
     if encoding == "auto":
+        space = foreign_space(spec)
+        if space is not None:
+            raise problem(
+                path,
+                f"holds {space}, not sRGB; convert it to sRGB or linear Rec.709, "
+                "or give --encoding srgb or linear to read it as it is",
+            )
         chosen: Encoding = "linear" if pixels.dtype.kind == "f" else "srgb"
     else:
         chosen = encoding
