@@ -11,7 +11,7 @@ from cutis.apps import options
 def train(
     recipe: Annotated[
         str,
-        typer.Argument(help="aliaga2022, aliaga2022-cosine, smoke, or default (the baked one)."),
+        typer.Argument(help="aliaga2022, aliaga2022-mean, smoke, or default (the baked one)."),
     ] = "aliaga2022",
     output: Annotated[
         Path | None,

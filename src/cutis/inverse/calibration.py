@@ -25,6 +25,8 @@ from cutis.optics import from_coordinates
 
 SAMPLE = 800
 """Texels that gains are judged on."""
+DARK = 0.25
+"""Share of the 90th percentile of brightness below which texels are hair or holes, not skin."""
 SCALE = 0.02
 """ρ, the relative colour error at which a texel counts half as out of the albedo space."""
 PULL = 0.3
@@ -99,6 +101,8 @@ def _search(rgb: NDArray[np.floating], directions: NDArray[np.float64]) -> NDArr
     bright = rgb[(rgb > 0.0).all(axis=1)]
     if len(bright) < 10:
         raise CutisError("too few texels with colour inside the mask to calibrate; check the mask")
+    brightness = bright.mean(axis=1)
+    bright = bright[brightness > DARK * np.percentile(brightness, 90)]
     picks = np.random.default_rng(0).choice(len(bright), min(SAMPLE, len(bright)), replace=False)
     sample = bright[picks].astype(np.float32)
     space = albedo_space()
