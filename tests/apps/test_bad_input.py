@@ -133,9 +133,9 @@ def test_masks(command, values, message, maps, cutis, one_line, tmp_path):
     [
         (["--white", "sunny"], "--white takes none, auto or three gains"),
         (["--white", "1,1"], "--white takes none, auto or three gains"),
-        (["--white", "1,1,99"], "--white takes none, auto or three numbers"),
+        (["--white", "1,1,99"], "white takes none, auto or three numbers"),
         (["--exposure", "bright"], "--exposure takes none, auto or one gain"),
-        (["--exposure", "nan"], "--exposure takes none, auto or one number"),
+        (["--exposure", "nan"], "exposure takes none, auto or one number"),
         (["--encoding", "log"], "--encoding must be auto, srgb or linear"),
         (["--model", "nobody"], "unknown model 'nobody'"),
     ],

@@ -94,7 +94,7 @@ def test_exposure_alone_is_one_gain_for_all(palette):
     ],
 )
 def test_anything_else_is_refused_in_one_line(white, exposure, palette):
-    with pytest.raises(CutisError, match=r"^--(white|exposure) ") as caught:
+    with pytest.raises(CutisError, match=r"^(white|exposure) ") as caught:
         calibrate(palette, white, exposure)
     assert "\n" not in str(caught.value)
 
