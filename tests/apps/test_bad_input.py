@@ -176,7 +176,7 @@ def test_maps_that_are_none(command, write_face, cutis, one_line, tmp_path):
     more = ["-o", tmp_path / "new.png"] if command == "edit" else []
     exr, png = write_face(tmp_path, "exr"), write_face(tmp_path)
     assert "not a file of skin maps" in one_line(cutis(command, exr, *more))
-    assert "named channels need OpenEXR" in one_line(cutis(command, png, *more))
+    assert "cutis estimate" in one_line(cutis(command, png, *more))
     assert "no such file" in one_line(cutis(command, tmp_path / "none.exr", *more))
 
 

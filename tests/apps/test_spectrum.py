@@ -52,3 +52,11 @@ def test_many_skins(cutis, tmp_path):
             skin({"melanin": float(row[1]), "blood": float(row[2])})
         )
         np.testing.assert_allclose(np.array(row[3:], float), expected, atol=1e-6)
+
+
+def test_a_misspelled_column_is_named(cutis, one_line, tmp_path):
+    skins = tmp_path / "skins.csv"
+    skins.write_text("melanine,blood\n0.02,0.01\n")
+    line = one_line(cutis("spectrum", skins, "-o", tmp_path / "spectra.csv"))
+    assert "'melanine'" in line
+    assert "melanin?" in line

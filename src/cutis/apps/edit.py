@@ -80,12 +80,15 @@ def edit(
         progress.step("writing")
         write_texture(result, output)
         if save_maps is not None:
-            provenance = source_note(path, save_maps, texture.encoding)
+            provenance = source_note(path, texture.encoding)
             replace(edited, provenance=provenance).save(save_maps)
     if quiet:
         return
-    for text, clamped in zip(edited.edits, edited.clamped, strict=True):
-        note = f", {clamped:,} texels clamped to range" if clamped else ""
+    inside = int(np.count_nonzero(skin.mask))
+    done = len(skin.edits)  # by earlier runs
+    for text, clamped in zip(edited.edits[done:], edited.clamped[done:], strict=True):
+        share = f" ({100 * clamped / inside:.0f} % of the mask)"
+        note = f", {clamped:,} texels clamped to range{share}" if clamped else ""
         out.print(f"{text}{note}")
     changed = int(np.count_nonzero((result.pixels != texture.pixels).any(axis=-1)))
     out.print(f"{changed:,} texels changed; wrote {output}")

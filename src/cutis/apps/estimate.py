@@ -56,8 +56,6 @@ def run(
     step: Any,
 ) -> tuple["SkinMaps", "Texture", dict[str, Any]]:
     """The work of the command; `step(name)` is called as each of six steps begins."""
-    from dataclasses import replace
-
     import cutis.maps as maps
     from cutis.apps.previews import write_previews
     from cutis.textures import read_mask, read_texture, replacing, write_channels
@@ -71,8 +69,6 @@ def run(
 
     step("estimating")
     skin = maps.estimate(texture, cover, white=white_value, exposure=exposure_value, model=model)
-    note = maps.source_note(face, stem, texture.encoding)
-    skin = replace(skin, provenance=note)
 
     step("writing maps")
     skin.save(f"{stem}.skin.exr", "half" if half else "float")
@@ -109,8 +105,10 @@ def say(results: dict[str, Any], skin: "SkinMaps") -> None:
     if colour is None:
         out.print("no texel inside the mask has the colour of skin; check mask and encoding")
         return
+    share = results["skin_texels"] / results["masked_texels"]
     out.print(
-        f"model against capture on {results['skin_texels']:,} skin texels: ΔE00 mean "
+        f"model against capture on {results['skin_texels']:,} skin texels (L* > 35, C*ab > 12; "
+        f"{100 * share:.1f} % of the mask): ΔE00 mean "
         f"{colour['delta_e_mean']:.3f}, 95 % {colour['delta_e_p95']:.3f}, "
         f"out of gamut {100 * colour['out_of_gamut']:.1f} %, ITA {colour['ita_median']:.0f}°"
     )
@@ -118,5 +116,7 @@ def say(results: dict[str, Any], skin: "SkinMaps") -> None:
         "On skin colours RGB fixes melanin and blood well, thickness less, and says little of "
         "eumelanin and oxygenation."
     )
+    if share < 0.2:
+        out.print("That is a small part of the mask: darker texels are not in these numbers.")
     if colour["out_of_gamut"] > 0.05 and skin.calibration.origin != "auto":
         out.print("Many texels are out of gamut: try --white auto, or a tighter --mask.")

@@ -1,6 +1,7 @@
 """`cutis spectrum`: parameters in, reflectance spectrum out."""
 
 import csv
+import difflib
 import io
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -93,6 +94,9 @@ def _read(path: Path) -> tuple[list[str], list[list[str]], "NDArray[np.float64]"
         raise CutisError(f"{path.name}: not a CSV file in UTF-8") from None
     columns = [name.strip() for name in columns]
     known = [i for i, name in enumerate(columns) if name in NAMES]
+    for name in set(columns) - set(NAMES):
+        if close := difflib.get_close_matches(name.lower(), NAMES, 1, 0.8):
+            raise CutisError(f"{path.name}: column {name!r} is not a parameter; is it {close[0]}?")
     if not known or not table:
         raise CutisError(
             f"{path.name}: needs a header with some of {', '.join(NAMES)} and a row per skin"

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from cutis.errors import CutisError
 from cutis.inverse.calibration import Exposure, White, calibrate
 from cutis.inverse.models import load_model
+from cutis.maps.files import source_note
 from cutis.maps.skin_maps import SkinMaps
 from cutis.optics import NAMES
 from cutis.textures.texture import Texture, bands
@@ -37,7 +38,17 @@ def estimate(
         skins = inverse.encode(calibration.apply(source[rows][inside]))
         for i, name in enumerate(NAMES):
             maps[name][rows][inside] = skins[:, i]
-    return SkinMaps(**maps, mask=cover, calibration=calibration, model=model, source=source)
+    provenance = {}
+    if isinstance(face, Texture) and face.path is not None and face.path.is_file():
+        provenance = source_note(face.path, face.encoding)
+    return SkinMaps(
+        **maps,
+        mask=cover,
+        calibration=calibration,
+        model=model,
+        source=source,
+        provenance=provenance,
+    )
 
 
 def _linear(face: Texture | ArrayLike) -> NDArray[np.float32]:

@@ -47,7 +47,7 @@ def save_maps(skin: SkinMaps, path: str | os.PathLike[str], dtype: str = "float"
     if skin.edits:
         header[f"{PREFIX}edits"] = json.dumps(list(zip(skin.edits, skin.clamped, strict=True)))
     for key, value in skin.provenance.items():
-        header[f"{PREFIX}{key}"] = value
+        header[f"{PREFIX}{key}"] = _from_folder(value, path) if key == "source" else value
     if dtype not in ("float", "half"):
         raise CutisError(f"maps are stored as float or half, not {dtype}")
     textures.write_channels(path, channels, "half" if dtype == "half" else "float", header)
@@ -56,6 +56,11 @@ def save_maps(skin: SkinMaps, path: str | os.PathLike[str], dtype: str = "float"
 def load_maps(path: str | os.PathLike[str]) -> SkinMaps:
     """Reads what `save_maps` wrote; CutisError when channels are missing or out of range."""
     path = Path(path)
+    if path.is_file() and path.suffix.lower() != ".exr":
+        raise CutisError(
+            f"{path.name} is not a file of skin maps (NAME.skin.exr); "
+            "make one from a texture with: cutis estimate"
+        )
     channels, metadata = textures.read_channels(path)
     missing = [name for name in NAMES if name not in channels]
     if missing:
@@ -118,7 +123,8 @@ def load_skin(
     texture = textures.read_texture(capture, "srgb" if encoding == "srgb" else "linear")
     colours = texture.linear()
     original = skin.original and replace(skin.original, source=colours)
-    return replace(skin, source=colours, original=original)
+    note = source_note(capture, texture.encoding)
+    return replace(skin, source=colours, original=original, provenance=note)
 
 
 def _checked(
@@ -137,13 +143,21 @@ def _checked(
     return np.where(inside, np.clip(values, low, high), np.float32(0))
 
 
-def source_note(source: Path, beside: Path, encoding: str) -> dict[str, str]:
-    """Provenance of a capture: its path from the folder of `beside`, SHA-256 and encoding."""
-    place = source.resolve()
-    with contextlib.suppress(ValueError):  # on another drive
-        place = Path(os.path.relpath(place, beside.resolve().parent))
+def _from_folder(source: str, maps: str | os.PathLike[str]) -> str:
+    """A capture's whole path as one from the folder of the maps; others as they are."""
+    if Path(source).is_absolute():
+        with contextlib.suppress(ValueError):  # on another drive
+            return Path(os.path.relpath(source, Path(maps).resolve().parent)).as_posix()
+    return source
+
+
+def source_note(source: Path, encoding: str) -> dict[str, str]:
+    """Provenance of a capture: its whole path, SHA-256 and encoding.
+
+    `save_maps` stores the path as seen from the folder of the maps.
+    """
     return {
-        "source": place.as_posix(),
+        "source": source.resolve().as_posix(),
         "source_sha256": digest(source),
         "source_encoding": encoding,
     }

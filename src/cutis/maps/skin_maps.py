@@ -110,6 +110,9 @@ class SkinMaps:
             raise CutisError(f"the amount of an edit must lie in 0 to 1, not {amount:g}")
         edits = [edits] if isinstance(edits, Edit) else list(edits)
         whole = np.float32(amount) * self._weight(where)
+        how = (f", amount {amount:g}" if amount < 1 else "") + (
+            ", painted" if where is not None else ""
+        )
         result = self
         for edit in edits:
             procedural = where is None and edit.where == "patches"
@@ -120,7 +123,7 @@ class SkinMaps:
                 result,
                 **changes,
                 original=self.original or self,
-                edits=(*result.edits, str(edit)),
+                edits=(*result.edits, str(edit) + how),
                 clamped=(*result.clamped, clamped),
             )
         return result
