@@ -50,7 +50,7 @@ def edit(
     from cutis.errors import CutisError
     from cutis.maps import find_source, load_maps, parse_edit, source_note
     from cutis.maps.presets import preset as named
-    from cutis.textures import read_mask, read_texture, write_texture
+    from cutis.textures import format_of, read_mask, read_texture, write_texture
 
     flags = {
         "melanin": melanin,
@@ -61,6 +61,7 @@ def edit(
     }
     edits = [change for name in preset or [] for change in named(name)]
     edits += [parse_edit(name, text) for name, text in flags.items() if text is not None]
+    format_of(output)  # fails now rather than after the work
     with steps(4, quiet) as progress:
         progress.step("reading")
         skin = load_maps(maps)

@@ -5,11 +5,12 @@ from cutis.textures.channels import read_channels, write_channels
 from cutis.textures.mask import read_mask
 from cutis.textures.reading import read_texture
 from cutis.textures.texture import Encoding, Texture, out_of_range
-from cutis.textures.writing import write_texture
+from cutis.textures.writing import format_of, write_texture
 
 __all__ = [
     "Encoding",
     "Texture",
+    "format_of",
     "out_of_range",
     "read_channels",
     "read_mask",

@@ -55,12 +55,24 @@ def write_texture(texture: Texture, path: str | os.PathLike[str]) -> None:
     a file that was there is then untouched.
     """
     path = Path(path)
+    file_format = format_of(path)
+    fitted = _fitted(texture, file_format)
+    encode(path, file_format, _spec(texture, fitted, file_format), fitted.pixels)
+
+
+def format_of(path: Path) -> str:
+    """OpenImageIO's name of the format that `write_texture` would write.
+
+    Raises CutisError for an unknown extension or a folder that is not there, so that a command can
+    ask before it works.
+    """
     file_format = FORMATS.get(path.suffix.lower())
     if file_format is None:
         known = ", ".join(FORMATS)
         raise problem(path, f"has an extension that is none of {known}; choose one of these")
-    fitted = _fitted(texture, file_format)
-    encode(path, file_format, _spec(texture, fitted, file_format), fitted.pixels)
+    if not path.parent.is_dir():
+        raise problem(path, f"the folder {path.parent} does not exist; create it first")
+    return file_format
 
 
 def _fitted(texture: Texture, file_format: str) -> Texture:
