@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from cutis.colour import illuminant
-from cutis.colour.observer import _columns, colour_matching, wavelengths
+from cutis.colour.observer import colour_matching, wavelengths
 from cutis.errors import CutisError
+from cutis.optics.tables import packaged_table
 
 
 def test_wavelengths():
@@ -22,7 +23,7 @@ def test_observer_is_that_of_colour_science():
 def test_illuminants_are_those_of_colour_science():
     from colour import SDS_ILLUMINANTS
 
-    names = [name for name in _columns("illuminants") if name != "lambda_nm"]
+    names = [name for name in packaged_table("colour", "illuminants") if name != "lambda_nm"]
     assert {"A", "D50", "D65", "FL11", "LED-B3"} <= set(names)
     for name in names:
         expected = [SDS_ILLUMINANTS[name][w] for w in wavelengths()]

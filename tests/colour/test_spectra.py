@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 
 from cutis.colour import illuminant, reflectance_to_rgb, spectrum_to_rgb, spectrum_to_xyz
-from cutis.colour.observer import _columns, colour_matching, wavelengths
+from cutis.colour.observer import colour_matching, wavelengths
 from cutis.colour.spectra import XYZ_TO_SRGB
 from cutis.errors import CutisError
 from cutis.optics import WAVELENGTHS
+from cutis.optics.tables import packaged_table
 
-LIGHTS = [name for name in _columns("illuminants") if name != "lambda_nm"]
+LIGHTS = [name for name in packaged_table("colour", "illuminants") if name != "lambda_nm"]
 
 
 @pytest.mark.parametrize("light", LIGHTS)

@@ -1,11 +1,12 @@
 """What commands say: progress with time left, tables, one clear line for errors."""
 
 import signal
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.table import Table
 
 # Names of files are printed as they are: no markup, no emoji, no line breaks inside them.
 out = Console(highlight=False, markup=False, emoji=False, soft_wrap=True)
@@ -64,3 +65,11 @@ def steps(total: int, quiet: bool) -> Iterator[Steps]:
             yield running
         finally:
             signal.signal(signal.SIGINT, before)
+
+
+def print_statistics(rows: Iterable[tuple[str, str, float, float, float]]) -> None:
+    """A table of maps: name, unit, 5th percentile, median, 95th percentile."""
+    table = Table("map", "unit", "5 %", "median", "95 %", box=None)
+    for name, unit, *values in rows:
+        table.add_row(name, unit, *(f"{value:.4g}" for value in values))
+    out.print(table)

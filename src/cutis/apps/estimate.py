@@ -88,16 +88,14 @@ def run(
 
 def say(results: dict[str, Any], skin: "SkinMaps") -> None:
     """Prints what was found."""
-    from rich.table import Table
-
-    from cutis.apps.console import out
+    from cutis.apps.console import out, print_statistics
 
     gains = ", ".join(f"{g:.3f}" for g in results["calibration"]["gains"])
     out.print(f"gains {gains} ({results['calibration']['origin']}), model {results['model']}")
-    table = Table("map", "unit", "5 %", "median", "95 %", box=None)
-    for name, row in results["maps"].items():
-        table.add_row(name, row["unit"], *(f"{row[k]:.4g}" for k in ("p5", "median", "p95")))
-    out.print(table)
+    print_statistics(
+        (name, row["unit"], row["p5"], row["median"], row["p95"])
+        for name, row in results["maps"].items()
+    )
     for key, what in (("below_0", "negative"), ("above_1", "above one")):
         if results[key]:
             out.print(f"{results[key]:,} texels have a colour {what}, which is no albedo")

@@ -11,9 +11,7 @@ def info(maps: Annotated[Path, typer.Argument(help="Maps, NAME.skin.exr.")]) -> 
 
     Example: cutis info out/face.skin.exr
     """
-    from rich.table import Table
-
-    from cutis.apps.console import out
+    from cutis.apps.console import out, print_statistics
     from cutis.maps import load_maps
 
     skin = load_maps(maps)
@@ -26,7 +24,4 @@ def info(maps: Annotated[Path, typer.Argument(help="Maps, NAME.skin.exr.")]) -> 
         out.print(f"{key.replace('_', ' ')}: {value}")
     for change in skin.edits:
         out.print(f"edit: {change}")
-    table = Table("map", "unit", "5 %", "median", "95 %", box=None)
-    for name, unit, low, median, high in skin.statistics():
-        table.add_row(name, unit, f"{low:.4g}", f"{median:.4g}", f"{high:.4g}")
-    out.print(table)
+    print_statistics(skin.statistics())

@@ -6,13 +6,11 @@ Tabulated substances are interpolated linearly and may be asked for 250–1000 n
 from 250 nm up (bilirubin and β-carotene, which do not absorb past 700 nm); outside, they raise.
 """
 
-from functools import cache
-from importlib import resources
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutis.errors import CutisError
+from cutis.optics.tables import packaged_table
 
 LN10 = float(np.log(10.0))
 """Turns a decadic (molar extinction) coefficient into a natural-log absorption coefficient."""
@@ -25,21 +23,14 @@ BETA_CAROTENE_MOLAR_MASS = 536.8726
 """g/mol [aliaga2022, appendix]."""
 
 
-@cache
-def _table(name: str) -> NDArray[np.float64]:
-    """Rows of a packaged CSV as a (columns, rows) array; `#` lines and one header row skipped."""
-    text = resources.files("cutis.data").joinpath("chromophores", f"{name}.csv").read_text("utf-8")
-    rows = [line for line in text.splitlines() if line and not line.startswith("#")]
-    table = np.array([[float(cell) for cell in row.split(",")] for row in rows[1:]]).T
-    table.flags.writeable = False
-    return table
-
-
 def _interpolate(
-    name: str, column: int, wavelength: ArrayLike, zero_past_end: bool
+    name: str, column: str, wavelength: ArrayLike, zero_past_end: bool
 ) -> NDArray[np.float64]:
-    table = _table(name)
-    nodes, values = table[0], np.maximum(table[column], 0.0)  # noise around zero is not gain
+    table = packaged_table("chromophores", name)
+    nodes, values = (
+        table["lambda_nm"],
+        np.maximum(table[column], 0.0),
+    )  # noise around zero is not gain
     lam = np.asarray(wavelength, dtype=np.float64)
     if lam.size and (lam.min() < nodes[0] or (lam.max() > nodes[-1] and not zero_past_end)):
         raise CutisError(
@@ -73,22 +64,30 @@ def baseline(
 def oxyhemoglobin(wavelength: ArrayLike, concentration: float = 150.0) -> NDArray[np.float64]:
     """Oxygenated haemoglobin at `concentration` g/L of blood [prahl1999hemoglobin]."""
     molar = concentration / HEMOGLOBIN_MOLAR_MASS
-    return LN10 * molar * _interpolate("hemoglobin_prahl", 1, wavelength, zero_past_end=False)
+    return LN10 * molar * _interpolate("hemoglobin_prahl", "HbO2", wavelength, zero_past_end=False)
 
 
 def deoxyhemoglobin(wavelength: ArrayLike, concentration: float = 150.0) -> NDArray[np.float64]:
     """Deoxygenated haemoglobin at `concentration` g/L of blood [prahl1999hemoglobin]."""
     molar = concentration / HEMOGLOBIN_MOLAR_MASS
-    return LN10 * molar * _interpolate("hemoglobin_prahl", 2, wavelength, zero_past_end=False)
+    return LN10 * molar * _interpolate("hemoglobin_prahl", "Hb", wavelength, zero_past_end=False)
 
 
 def bilirubin(wavelength: ArrayLike, concentration: float = 0.05) -> NDArray[np.float64]:
     """Bilirubin at `concentration` g/L, extinction in chloroform [photochemcad]."""
     molar = concentration / BILIRUBIN_MOLAR_MASS
-    return LN10 * molar * _interpolate("bilirubin_chloroform", 1, wavelength, zero_past_end=True)
+    return (
+        LN10
+        * molar
+        * _interpolate("bilirubin_chloroform", "epsilon", wavelength, zero_past_end=True)
+    )
 
 
 def beta_carotene(wavelength: ArrayLike, concentration: float = 2.1e-4) -> NDArray[np.float64]:
     """β-carotene at `concentration` g/L, extinction in hexane [photochemcad]."""
     molar = concentration / BETA_CAROTENE_MOLAR_MASS
-    return LN10 * molar * _interpolate("beta_carotene_hexane", 1, wavelength, zero_past_end=True)
+    return (
+        LN10
+        * molar
+        * _interpolate("beta_carotene_hexane", "epsilon", wavelength, zero_past_end=True)
+    )
