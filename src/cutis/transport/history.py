@@ -11,7 +11,8 @@ through is scored, the rest goes on.
 Depths are optical, μt times length, counted from the top of the layer that the photon is in. A
 stack is (L, 4): optical depth (inf: a half space), share lost in a collision μa / μt, anisotropy g,
 1 / 2g (0 where g = 0). `score` (2 + 2L) gathers the weight reflected, transmitted and absorbed in
-each layer, and at the end holds the optical path that the photon has gone in each layer.
+each layer, and at the end holds the optical path that the photon had gone in each layer when it
+last left that layer.
 """
 
 import math
@@ -74,7 +75,7 @@ def make_history(compile: Callable[[Any], Any]) -> Any:
             ratio = (1.0 - g * g) / (1.0 - g + 2.0 * g * xi)
             along = (1.0 + g * g - ratio * ratio) * half_inverse
         sines = math.sqrt(max((1.0 - mu * mu) * (1.0 - along * along), 0.0))
-        return min(max(mu * along + sines * cosine(second), -1.0), 1.0)
+        return mu * along + sines * cosine(second)
 
     @compile
     def fresnel(mu: Any, index: Any) -> Any:
@@ -107,8 +108,7 @@ def make_history(compile: Callable[[Any], Any]) -> Any:
             mu = math.sqrt(1.0 - side * side)
         else:
             mu = math.sqrt(uniform(r0))
-        weight, z, layer, last = 1.0, 0.0, 0, len(stack) - 1
-        path = 3 + last  # where `score` keeps the path in the first layer
+        weight, z, path, layer, last = 1.0, 0.0, 0.0, 0, len(stack) - 1
         while True:
             step += ONE
             r0, r1, r2, r3 = words(photon, step, stream_low, stream_high, key_low, key_high)
@@ -116,12 +116,13 @@ def make_history(compile: Callable[[Any], Any]) -> Any:
             while True:
                 reached = z + mu * left
                 if 0.0 <= reached <= stack[layer, 0]:
-                    score[path + layer] += left
+                    path += left
                     z = reached
                     break
                 gone = (stack[layer, 0] - z if mu > 0.0 else -z) / mu
-                score[path + layer] += gone
                 left = max(left - gone, 0.0)
+                score[3 + last + layer] += path + gone
+                path = 0.0
                 if mu > 0.0 and layer < last:
                     layer += 1
                     z = 0.0
