@@ -2,6 +2,18 @@
 
 from cutis.inverse.calibration import Calibration, calibrate
 from cutis.inverse.fit import fit
+from cutis.inverse.metamers import Family, colours_under, metamers, spread
 from cutis.inverse.models import MODELS, Model, load_model
 
-__all__ = ["MODELS", "Calibration", "Model", "calibrate", "fit", "load_model"]
+__all__ = [
+    "MODELS",
+    "Calibration",
+    "Family",
+    "Model",
+    "calibrate",
+    "colours_under",
+    "fit",
+    "load_model",
+    "metamers",
+    "spread",
+]

@@ -2,8 +2,8 @@
 
 `make_history(compile)` builds the history out of functions compiled by `compile`: Numba's `njit`
 for the processor (`monte_carlo_kernel.py`), `cuda.jit(device=True)` for a graphics card
-(`monte_carlo_cuda.py`). It is the random walk of [wang1992mcml] in a plane (dimension 2) or in space
-(3), with photons that lose weight instead of dying. All layers share one refractive index: a
+(`monte_carlo_cuda.py`). It is the random walk of [wang1992mcml] in a plane (dimension 2) or in
+space (3), with photons that lose weight instead of dying. All layers share one refractive index: a
 photon keeps its direction and what is left of its optical path when it crosses an interface, so it
 stops there before it meets anything else. At the outer boundary a photon splits: what Fresnel lets
 through is scored, the rest goes on.
