@@ -20,6 +20,8 @@ from cutis.optics import NAMES, to_coordinates
 ROOT = Path(__file__).parents[1]
 SHARED = ROOT.parent / "shared" / "data" / "albedo"
 MODELS = ("default", "aliaga2022")
+TENSORS = ("lookup", "lookup-55k")
+"""Compared in the closed loop only."""
 ORDER = ("melanin", "blood", "thickness", "oxygenation", "eumelanin")
 SKINS = 120_000
 
@@ -46,7 +48,7 @@ def closed_loop() -> tuple[str, str]:
         face = read(path)
         mask = None if mask_path is None else read_mask(mask_path, face.shape)
         automatic = estimate(face, mask, white="auto")
-        runs = [(automatic.calibration.gains, model) for model in MODELS]
+        runs = [(automatic.calibration.gains, model) for model in (*MODELS, *TENSORS)]
         runs.append(((1.0, 1.0, 1.0), "default"))
         for gains, model in runs:
             found = report(estimate(face, mask, white=gains, model=model))

@@ -31,6 +31,7 @@ def edit(
     source: Annotated[
         Path | None, typer.Option(help="The capture, if it is not where the maps say.")
     ] = None,
+    method: options.Method = None,
     save_maps: Annotated[
         Path | None, typer.Option(help="Also write the edited maps to this EXR.")
     ] = None,
@@ -59,12 +60,15 @@ def edit(
         "eumelanin": eumelanin,
         "oxygenation": oxygenation,
     }
+    by_tensor = None if method is None else options.method_name(method)
     edits = [change for name in preset or [] for change in named(name)]
     edits += [parse_edit(name, text) for name, text in flags.items() if text is not None]
     format_of(output)  # fails now rather than after the work
     with steps(4, quiet) as progress:
         progress.step("reading")
         skin = load_maps(maps)
+        if by_tensor is not None:
+            skin = replace(skin, model=by_tensor)
         path = find_source(skin, maps, source)
         encoding = skin.provenance.get("source_encoding", "auto")
         for written in (output, save_maps):

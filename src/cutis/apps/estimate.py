@@ -22,6 +22,7 @@ def estimate(
     white: options.White = "none",
     exposure: options.Exposure = "none",
     model: options.ModelName = "default",
+    method: options.Method = None,
     encoding: options.Encoding = "auto",
     half: Annotated[bool, typer.Option(help="Store the maps as half instead of float.")] = False,
     quiet: options.Quiet = False,
@@ -34,7 +35,12 @@ def estimate(
     Example: cutis estimate face.png --mask mask.png --white auto -o out/
     """
     from cutis.apps.console import out, steps
+    from cutis.errors import CutisError
 
+    if method is not None:
+        if model != "default":
+            raise CutisError("give either --model or --method, not both")
+        model = options.method_name(method)
     with steps(6, quiet) as progress:
         skin, _, results = run(
             face, output, mask, white, exposure, model, encoding, half, progress.step

@@ -18,6 +18,10 @@ Exposure = Annotated[str, typer.Option("--exposure", help="none, auto, or one ga
 ModelName = Annotated[
     str, typer.Option("--model", help="default, aliaga2022, or a .safetensors file of weights.")
 ]
+Method = Annotated[
+    str | None,
+    typer.Option("--method", help="lookup or lookup-55k: a look-up tensor instead of a model."),
+]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 Encoding = Annotated[
     str,
@@ -46,6 +50,15 @@ def encoding_name(text: str) -> Literal["auto", "srgb", "linear"]:
     if text == "auto":
         return "auto"
     raise CutisError(f"--encoding must be auto, srgb or linear, not {text!r}")
+
+
+def method_name(text: str) -> str:
+    """The value of --method, as the name of a model."""
+    from cutis.inverse.lookup import SHAPES
+
+    if text not in SHAPES:
+        raise CutisError(f"--method must be {' or '.join(SHAPES)}, not {text!r}")
+    return text
 
 
 def make_folder(folder: Path) -> None:

@@ -1,7 +1,8 @@
 """Models by name: how a colour becomes a skin, and a skin a colour.
 
 `default` reads the baked inverse and decodes through the exact albedo space;
-`aliaga2022` is the paper's pair of networks, trained by `cutis train`.
+`aliaga2022` is the paper's pair of networks, trained by `cutis train`; `lookup` and `lookup-55k`
+are its look-up tensors of 256 000 and 55 296 skins.
 """
 
 from collections.abc import Callable
@@ -15,10 +16,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from cutis.albedo import albedo_space
 from cutis.errors import CutisError
+from cutis.inverse.lookup import SHAPES, lookup_tensor
 from cutis.inverse.network import Perceptron, load_weights
 from cutis.optics import from_coordinates, to_coordinates
 
-MODELS = ("default", "aliaga2022")
+MODELS = ("default", "aliaga2022", *SHAPES)
 """Names that `load_model` knows; it also takes the path of a weights file."""
 BAND = 1 << 18
 """Texels converted at a time."""
@@ -68,6 +70,9 @@ def load_model(name: str = "default") -> Model:
         with resources.as_file(weights.joinpath("default.npz")) as file:
             baked = load_baked(file)
         return Model(name, baked, albedo_space().rgb)
+    if name in SHAPES:
+        tensor = lookup_tensor(name)
+        return Model(name, tensor.encode, tensor.decode)
     if name in MODELS:
         with resources.as_file(weights.joinpath(f"{name}.safetensors")) as file:
             return _networks(name, file)

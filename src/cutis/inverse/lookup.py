@@ -1,0 +1,151 @@
+"""The look-up tensor of the paper: a grid of skins, searched for the nearest colour.
+
+Nodes are even in network coordinates, ends included. The inverse takes, for every colour, the node
+whose linear sRGB is nearest (exactly, by squared L2; the first of equals); edited skins take the
+colour of the node nearest to them in network coordinates. Nothing is interpolated: quantisation is
+what the paper shows of this method [aliaga2022].
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from cutis.albedo import AlbedoSpace, albedo_space
+from cutis.colour import reflectance_to_rgb
+from cutis.errors import CutisError
+from cutis.optics import PARAMETERS, WAVELENGTHS, from_coordinates, to_coordinates
+
+SHAPES = {"lookup": (64, 32, 5, 5, 5), "lookup-55k": (64, 32, 3, 3, 3)}
+"""The two tensors of the paper, melanin, blood, thickness, eumelanin and oxygenation."""
+LEAF = 8
+"""Most points in a leaf of the search tree."""
+CURVE_CELLS = 128
+"""Cells per axis of the curve along which queries are sorted."""
+
+
+def tensor_skins(shape: Sequence[int]) -> NDArray[np.floating]:
+    """(n, 5) parameters of the nodes of a tensor of that shape, the last parameter fastest.
+
+    An axis of one node takes the middle of its range. Raises CutisError for shapes that are not
+    five positive whole numbers.
+    """
+    sizes = tuple(shape)
+    if len(sizes) != len(PARAMETERS) or any(int(n) != n or n < 1 for n in sizes):
+        raise CutisError(
+            f"a tensor needs {len(PARAMETERS)} sizes above zero, such as 64,32,5,5,5, not "
+            f"{','.join(str(n) for n in sizes) or 'none'}"
+        )
+    axes = [np.linspace(0.0, 1.0, n) if n > 1 else np.array([0.5]) for n in sizes]
+    nodes = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+    return from_coordinates(nodes.reshape(-1, len(axes)))
+
+
+@dataclass(frozen=True, eq=False)
+class LookupTensor:
+    """A grid of skins of `shape` and the linear sRGB colour (n, 3) of each, float32."""
+
+    shape: tuple[int, ...]
+    colours: NDArray[np.float32]
+
+    def __post_init__(self) -> None:
+        count = len(tensor_skins(self.shape))
+        if self.colours.shape != (count, 3) or not np.isfinite(self.colours).all():
+            raise CutisError(f"a tensor of {count} skins needs as many finite colours")
+
+    @cached_property
+    def skins(self) -> NDArray[np.float32]:
+        """(n, 5) parameters of the nodes."""
+        return tensor_skins(self.shape).astype(np.float32)
+
+    @cached_property
+    def _tree(self) -> tuple[NDArray[np.generic], ...]:
+        return search_tree(self.colours)
+
+    def nearest(self, colours: ArrayLike) -> NDArray[np.int64]:
+        """(n, 3) linear sRGB → (n,) index of the skin with the nearest colour.
+
+        Raises CutisError for colours that are not finite.
+        """
+        from cutis.inverse.lookup_kernel import nearest_kernel
+
+        queries = np.ascontiguousarray(colours, dtype=np.float32)
+        if queries.ndim != 2 or queries.shape[1] != 3:
+            raise CutisError(f"colours must be (n, 3) linear sRGB, not {queries.shape}")
+        if not np.isfinite(queries).all():
+            raise CutisError("some colours are NaN or infinite; mask them out")
+        out = np.empty(len(queries), dtype=np.int64)
+        nearest_kernel(queries, curve_order(queries), *self._tree, out)
+        return out
+
+    def encode(self, colours: NDArray[np.float32]) -> NDArray[np.float32]:
+        """(n, 3) linear sRGB → (n, 5) network coordinates of the nearest skin."""
+        return to_coordinates(self.skins[self.nearest(colours)]).astype(np.float32)
+
+    def decode(self, skins: NDArray[np.float32]) -> NDArray[np.float32]:
+        """(n, 5) parameters → (n, 3) linear sRGB of the nearest node."""
+        cells = np.maximum(np.array(self.shape) - 1, 0)
+        node = np.rint(np.clip(to_coordinates(skins), 0, 1) * cells).astype(np.int64)
+        return self.colours[np.ravel_multi_index(tuple(node.T), self.shape)]
+
+
+def build_tensor(shape: Sequence[int], space: AlbedoSpace | None = None) -> LookupTensor:
+    """The tensor of that shape, its colours from the exact albedo space (a second)."""
+    colours = (space or albedo_space()).rgb(tensor_skins(shape))
+    return LookupTensor(tuple(int(n) for n in shape), colours)
+
+
+def tensor_of_spectra(shape: Sequence[int], reflectance: ArrayLike) -> LookupTensor:
+    """A tensor whose nodes were simulated elsewhere: reflectance (n, 41), as Monte Carlo gives."""
+    spectra = np.asarray(reflectance)
+    if spectra.ndim != 2 or spectra.shape[1] != len(WAVELENGTHS):
+        raise CutisError(f"reflectance must be (n, {len(WAVELENGTHS)}), not {spectra.shape}")
+    colours = reflectance_to_rgb(spectra, WAVELENGTHS).astype(np.float32)
+    return LookupTensor(tuple(int(n) for n in shape), colours)
+
+
+@lru_cache(maxsize=2)
+def lookup_tensor(name: str = "lookup") -> LookupTensor:
+    """One of the paper's two tensors by name, built once per process."""
+    return build_tensor(SHAPES[name])
+
+
+def search_tree(points: NDArray[np.float32]) -> tuple[NDArray[np.generic], ...]:
+    """(points in order of leaves, their index, box ends low and high, starts of leaves)."""
+    levels = max(int(np.ceil(np.log2(max(len(points) / LEAF, 1)))), 0)
+    order = np.arange(len(points))
+    segments = [(0, len(points))]
+    low, high = np.empty((2, 2 ** (levels + 1) - 1, 3))
+    node = 0
+    for level in range(levels + 1):
+        parts = []
+        for start, stop in segments:
+            inside = points[order[start:stop]]
+            low[node], high[node] = inside.min(axis=0), inside.max(axis=0)
+            if level < levels:
+                axis = int(np.argmax(high[node] - low[node]))
+                middle = (stop - start) // 2
+                split = np.argpartition(inside[:, axis], middle)
+                order[start:stop] = order[start:stop][split]
+                parts += [(start, start + middle), (start + middle, stop)]
+            node += 1
+        if level < levels:
+            segments = parts
+    starts = np.array([start for start, _ in segments] + [len(points)])
+    return points[order].astype(np.float64), order, low, high, starts
+
+
+def curve_order(colours: NDArray[np.float32]) -> NDArray[np.int64]:
+    """(n,) order of (n, 3) colours along a Morton curve through their bounding box."""
+    if not len(colours):
+        return np.empty(0, dtype=np.int64)
+    low = colours.min(axis=0)
+    size = np.maximum(colours.max(axis=0) - low, 1e-30)
+    cell = np.minimum((colours - low) / size * CURVE_CELLS, CURVE_CELLS - 1).astype(np.uint32)
+    key = np.zeros(len(colours), dtype=np.uint32)
+    for bit in range(CURVE_CELLS.bit_length() - 1):
+        for axis in range(3):
+            key |= ((cell[:, axis] >> np.uint32(bit)) & np.uint32(1)) << np.uint32(3 * bit + axis)
+    return np.argsort(key, kind="stable")
