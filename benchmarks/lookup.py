@@ -2,8 +2,8 @@
 
 FACE is a texture, scaled to 2048² texels. Three sets of colours in one run on all cores: the face,
 the face with 1 % noise (no colour twice) and uniformly random RGB, all against 256 000 skins.
-SciPy's tree is timed on every 16th (random RGB: 128th) colour and its time scaled up; brute force on 200
-colours on one core, its time shared by all cores.
+SciPy's tree is timed on every 16th (random RGB: 128th) colour and its time scaled up; brute force
+on 200 colours on one core, its time shared by all cores.
 """
 
 import argparse

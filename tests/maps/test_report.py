@@ -40,7 +40,11 @@ def test_numbers(skin):
     assert found["masked_texels"] == inside.sum() == 16 * 24
     assert found["skin_texels"] == texels.sum() < inside.sum()
     assert (found["below_0"], found["above_1"]) == (1, 1)
-    assert found["calibration"] == {"gains": list(GAINS), "origin": "given"}
+    assert found["calibration"] == {
+        "gains": list(GAINS),
+        "origin": "given",
+        "illuminant": "D65",
+    }
     assert found["colour"] == {
         "mse": pytest.approx(np.mean((truth - model)[texels] ** 2), rel=1e-3),
         "delta_e_mean": pytest.approx(errors.mean(), rel=1e-3),

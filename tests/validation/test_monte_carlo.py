@@ -63,7 +63,7 @@ def test_dark_epidermis_over_clear_dermis():
 
 
 def test_slab_of_van_de_hulst():
-    """Van de Hulst 1980, as MCML's manual quotes him [wang1992mcml]; T with the unscattered light."""
+    """Van de Hulst 1980, as MCML quotes him [wang1992mcml]; T with the unscattered light."""
     found = walk(
         [Layer(10.0, 90.0, 0.75, 0.02)], photons=500_000, dimension=3, incidence=1.0, seed=80
     )

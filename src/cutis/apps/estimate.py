@@ -21,6 +21,7 @@ def estimate(
     mask: options.Mask = None,
     white: options.White = "none",
     exposure: options.Exposure = "none",
+    illuminant: options.Illuminant = "D65",
     model: options.ModelName = "default",
     method: options.Method = None,
     encoding: options.Encoding = "auto",
@@ -43,7 +44,7 @@ def estimate(
         model = options.method_name(method)
     with steps(6, quiet) as progress:
         skin, _, results = run(
-            face, output, mask, white, exposure, model, encoding, half, progress.step
+            face, output, mask, white, exposure, model, encoding, half, progress.step, illuminant
         )
     if not quiet:
         say(results, skin)
@@ -60,12 +61,15 @@ def run(
     encoding: str,
     half: bool,
     step: Any,
+    illuminant: str = "D65",
 ) -> tuple["SkinMaps", "Texture", dict[str, Any]]:
     """The work of the command; `step(name)` is called as each of six steps begins."""
     import cutis.maps as maps
     from cutis.apps.previews import write_previews
+    from cutis.colour import illuminant as light_of
     from cutis.textures import read_mask, read_texture, replacing, write_channels
 
+    light_of(illuminant)  # fails now rather than after reading
     white_value, exposure_value = options.white_gains(white), options.exposure_gain(exposure)
     step("reading")
     texture = read_texture(face, options.encoding_name(encoding))
@@ -74,7 +78,10 @@ def run(
     stem = output / face.stem
 
     step("estimating")
-    skin = maps.estimate(texture, cover, white=white_value, exposure=exposure_value, model=model)
+    skin = maps.estimate(
+        texture, cover, white=white_value, exposure=exposure_value, model=model,
+        illuminant=illuminant,
+    )  # fmt: skip
 
     step("writing maps")
     skin.save(f"{stem}.skin.exr", "half" if half else "float")
@@ -97,7 +104,11 @@ def say(results: dict[str, Any], skin: "SkinMaps") -> None:
     from cutis.apps.console import out, print_statistics
 
     gains = ", ".join(f"{g:.3f}" for g in results["calibration"]["gains"])
-    out.print(f"gains {gains} ({results['calibration']['origin']}), model {results['model']}")
+    light = results["calibration"]["illuminant"]
+    out.print(
+        f"gains {gains} ({results['calibration']['origin']}), model {results['model']}"
+        + (f", captured under {light}" if light != "D65" else "")
+    )
     print_statistics(
         (name, row["unit"], row["p5"], row["median"], row["p95"])
         for name, row in results["maps"].items()

@@ -20,6 +20,8 @@ def info(maps: Annotated[Path, typer.Argument(help="Maps, NAME.skin.exr.")]) -> 
     out.print(f"{maps.name}: {width} × {height} texels, {100 * cover:.1f} % skin")
     gains = ", ".join(f"{g:.4f}" for g in skin.calibration.gains)
     out.print(f"model {skin.model}; gains {gains} ({skin.calibration.origin})")
+    if skin.calibration.conversion is not None:
+        out.print(f"captured under {skin.calibration.light}, converted to D65")
     for key, value in skin.provenance.items():
         out.print(f"{key.replace('_', ' ')}: {value}")
     for change in skin.edits:

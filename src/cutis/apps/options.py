@@ -22,6 +22,14 @@ Method = Annotated[
     str | None,
     typer.Option("--method", help="lookup or lookup-55k: a look-up tensor instead of a model."),
 ]
+Illuminant = Annotated[
+    str,
+    typer.Option(
+        "--illuminant",
+        help="Light of the capture: a CIE name (A, D50, FL11, LED-B3), D65-prime, or a CSV of its "
+        "spectrum.",
+    ),
+]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 Encoding = Annotated[
     str,

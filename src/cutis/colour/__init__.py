@@ -4,6 +4,7 @@ from cutis.colour.difference import delta_e, is_skin_colour, ita, lab
 from cutis.colour.observer import illuminant
 from cutis.colour.spectra import reflectance_to_rgb, spectrum_to_rgb, spectrum_to_xyz
 from cutis.colour.transfer import decode_srgb, encode_srgb
+from cutis.colour.upsampling import light_conversion, mallett_basis, upsample
 
 __all__ = [
     "decode_srgb",
@@ -13,7 +14,10 @@ __all__ = [
     "is_skin_colour",
     "ita",
     "lab",
+    "light_conversion",
+    "mallett_basis",
     "reflectance_to_rgb",
     "spectrum_to_rgb",
     "spectrum_to_xyz",
+    "upsample",
 ]

@@ -26,17 +26,18 @@ XYZ_TO_SRGB = np.array(
 def spectrum_to_xyz(wavelength: ArrayLike, light: str = "D65") -> NDArray[np.float64]:
     """(n, 3) matrix that turns reflectance at `wavelength` (n,) nm into XYZ, Y of white = 1.
 
-    The spectrum is taken as piecewise linear between its wavelengths and constant past its ends,
-    and summed against observer and illuminant every 5 nm.
+    `light` is a name or file for `illuminant`. The spectrum is taken as piecewise linear between
+    its wavelengths and constant past its ends, and summed against observer and light every 5 nm.
     """
-    return _xyz_matrix(tuple(np.asarray(wavelength, dtype=np.float64)), light).copy()
+    lam = np.asarray(wavelength, dtype=np.float64)
+    return _xyz_matrix(tuple(lam), illuminant(light).tobytes()).copy()
 
 
 @lru_cache(maxsize=32)
-def _xyz_matrix(lam: tuple[float, ...], light: str) -> NDArray[np.float64]:
+def _xyz_matrix(lam: tuple[float, ...], light: bytes) -> NDArray[np.float64]:
     if len(lam) < 2 or not np.all(np.diff(lam) > 0):
         raise CutisError("wavelengths must be at least two, in nm and increasing")
-    power = illuminant(light)[:, None] * colour_matching()
+    power = np.frombuffer(light)[:, None] * colour_matching()
     hats = np.stack([np.interp(wavelengths(), lam, np.eye(len(lam))[i]) for i in range(len(lam))])
     return hats @ power / power[:, 1].sum()
 

@@ -1,4 +1,4 @@
-"""Exposure and white balance of a capture, as gains on linear sRGB.
+"""Light, exposure and white balance of a capture: a matrix and gains on linear sRGB.
 
 A capture carries the exposure and the colour cast of its lights. `auto` looks for the gains at
 which the model explains the masked skin, with a pull towards 1: it minimises
@@ -8,7 +8,8 @@ which the model explains the masked skin, with a pull towards 1: it minimises
 r being the relative colour error of the best skin. The first term counts texels out of the
 albedo space and saturates, so that clothes and hair inside the mask do not decide. Nothing pulls
 towards a skin tone; the price is that under-exposure cannot be found, since darker colours are
-skins too. Gains are undone on output, so colours come back as they came.
+skins too. A capture under a light other than D65 is first converted to it (`colour.upsampling`).
+Conversion and gains are undone on output, so colours come back as they came.
 """
 
 from collections.abc import Sequence
@@ -19,6 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutis.albedo import albedo_space
+from cutis.colour import light_conversion
 from cutis.errors import CutisError
 from cutis.inverse.fit import fit
 from cutis.optics import from_coordinates
@@ -38,31 +40,54 @@ LIMITS = (0.1, 10.0)
 
 White = Literal["none", "auto"] | Sequence[float] | None
 Exposure = Literal["none", "auto"] | float | None
+Matrix = tuple[tuple[float, ...], ...]
 
 
 @dataclass(frozen=True)
 class Calibration:
-    """Gains (red, green, blue) that were applied to linear sRGB, and a sentence on their origin."""
+    """What was applied to linear sRGB as captured, and a word on the origin of the gains.
+
+    `gains` (red, green, blue) after `conversion`, the 3 × 3 matrix from the RGB of `light` to that
+    of D65; None where the capture was made under D65.
+    """
 
     gains: tuple[float, float, float] = (1.0, 1.0, 1.0)
     origin: str = "none"
+    light: str = "D65"
+    conversion: Matrix | None = None
 
     def apply(self, rgb: ArrayLike) -> NDArray[np.float32]:
         """(..., 3) linear sRGB as captured → calibrated."""
+        if self.conversion is not None:
+            rgb = np.asarray(rgb, np.float32) @ np.array(self.conversion, np.float32).T
         return np.multiply(rgb, np.array(self.gains, np.float32), dtype=np.float32)
 
     def undo(self, rgb: ArrayLike) -> NDArray[np.float32]:
         """(..., 3) calibrated linear sRGB → as captured."""
-        return np.divide(rgb, np.array(self.gains, np.float32), dtype=np.float32)
+        captured = np.divide(rgb, np.array(self.gains, np.float32), dtype=np.float32)
+        if self.conversion is not None:
+            captured = captured @ np.linalg.inv(np.array(self.conversion)).T.astype(np.float32)
+        return captured
 
 
-def calibrate(rgb: ArrayLike, white: White = None, exposure: Exposure = None) -> Calibration:
-    """Gains for masked texels `rgb` (n, 3) of linear sRGB.
+def calibrate(
+    rgb: ArrayLike, white: White = None, exposure: Exposure = None, light: str = "D65"
+) -> Calibration:
+    """Light and gains for masked texels `rgb` (n, 3) of linear sRGB.
 
+    `light` is that of the capture, on which it is balanced: a name or file that
+    `colour.illuminant` takes.
     `white` is "none", "auto" or three gains; `exposure` is "none", "auto" or one gain, which
     multiplies those of `white`. `white="auto"` looks for three gains, exposure included;
     `exposure="auto"` alone for one common gain.
     """
+    matrix = light_conversion(light)
+    conversion = None
+    if not np.array_equal(matrix, np.eye(3)):
+        conversion = tuple(tuple(float(v) for v in row) for row in matrix)
+        rgb = np.asarray(rgb) @ matrix.T
+    else:
+        light = "D65"
     fixed = np.ones(3)
     if not (white is None or isinstance(white, str)):
         fixed = fixed * _checked(white, 3, "white")
@@ -73,13 +98,14 @@ def calibrate(rgb: ArrayLike, white: White = None, exposure: Exposure = None) ->
             raise CutisError(f"{name} must be none, auto or numbers, not {value!r}")
     if white != "auto" and exposure != "auto":
         red, green, blue = (float(g) for g in fixed)
-        return Calibration((red, green, blue), "given" if np.any(fixed != 1) else "none")
+        origin = "given" if np.any(fixed != 1) else "none"
+        return Calibration((red, green, blue), origin, light, conversion)
     if white == "auto":
         found = _search(np.asarray(rgb) * fixed, np.eye(3))
     else:
         found = _search(np.asarray(rgb) * fixed, np.ones((1, 3)))
     red, green, blue = (float(g) for g in fixed * found)
-    return Calibration((red, green, blue), "auto")
+    return Calibration((red, green, blue), "auto", light, conversion)
 
 
 def _checked(values: Sequence[float], count: int, name: str) -> NDArray[np.float64]:

@@ -21,17 +21,19 @@ def estimate(
     white: White = None,
     exposure: Exposure = None,
     model: str = "default",
+    illuminant: str = "D65",
 ) -> SkinMaps:
     """Skin maps of a texture or of an (H, W, 3) array of linear sRGB.
 
     `mask` (H, W) in [0, 1] says where skin is; without one, wherever alpha is not 0. `white` and
-    `exposure` are gains, "auto" or "none" (`inverse.calibration`). Raises CutisError for arrays
+    `exposure` are gains, "auto" or "none" (`inverse.calibration`). `illuminant` is the light of the
+    capture, a name or file that `colour.illuminant` takes. Raises CutisError for arrays
     of other shapes, NaN or infinite colours, and masks that are empty or of another size.
     """
     source = _linear(face)
     cover = _cover(face, mask, source.shape[:2])
     inverse = load_model(model)
-    calibration = calibrate(_sample(source, cover), white, exposure)
+    calibration = calibrate(_sample(source, cover), white, exposure, illuminant)
     maps: dict[str, Any] = {name: np.zeros(cover.shape, dtype=np.float32) for name in NAMES}
     for rows in bands(cover.shape):
         inside = cover[rows] > 0

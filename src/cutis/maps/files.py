@@ -11,7 +11,7 @@ import contextlib
 import hashlib
 import json
 import os
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -41,9 +41,7 @@ def save_maps(skin: SkinMaps, path: str | os.PathLike[str], dtype: str = "float"
         f"{PREFIX}{p.name}": f"{p.meaning} [{p.unit}], {p.low:g} to {p.high:g}" for p in PARAMETERS
     }
     header[f"{PREFIX}model"] = skin.model
-    header[f"{PREFIX}calibration"] = json.dumps(
-        {"gains": skin.calibration.gains, "origin": skin.calibration.origin}
-    )
+    header[f"{PREFIX}calibration"] = json.dumps(asdict(skin.calibration))
     if skin.edits:
         header[f"{PREFIX}edits"] = json.dumps(list(zip(skin.edits, skin.clamped, strict=True)))
     for key, value in skin.provenance.items():
@@ -83,11 +81,16 @@ def load_maps(path: str | os.PathLike[str]) -> SkinMaps:
         red, green, blue = (float(g) for g in stored["gains"])
         if not all(0 < gain < float("inf") for gain in (red, green, blue)):
             raise ValueError("gains must be positive")
-        calibration = Calibration((red, green, blue), str(stored["origin"]))
+        light, conversion = str(stored.get("light", "D65")), stored.get("conversion")
+        if conversion is not None:
+            conversion = tuple(tuple(float(v) for v in row) for row in conversion)
+            if not np.isfinite(np.linalg.inv(np.array(conversion)) @ np.ones(3)).all():
+                raise ValueError("the conversion of light must be invertible")
+        calibration = Calibration((red, green, blue), str(stored["origin"]), light, conversion)
         edits = [
             (str(edit), int(clamped)) for edit, clamped in json.loads(notes.pop("edits", "[]"))
         ]
-    except (ValueError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError, np.linalg.LinAlgError) as error:
         raise CutisError(f"{path.name}: its header is damaged; estimate again") from error
     model = notes.pop("model", "default")
     provenance = {key: value for key, value in notes.items() if key not in NAMES}

@@ -53,6 +53,7 @@ def report(skin: SkinMaps) -> dict[str, Any]:
         "calibration": {
             "gains": [round(g, 5) for g in skin.calibration.gains],
             "origin": skin.calibration.origin,
+            "illuminant": skin.calibration.light,
         },
         "maps": {
             name: {"unit": unit, "p5": low, "median": median, "p95": high}

@@ -193,10 +193,17 @@ class SkinMaps:
         before = (self.original or self).parameters(rows)
         after = self.parameters(rows)
         changed = (before != after).any(axis=-1) & (self.mask[rows] > 0)
-        model = load_model(self.model)
-        ratio = model.decode(after[changed]) / np.maximum(model.decode(before[changed]), DARKEST)
+        new, old = (self._captured(skins[changed]) for skins in (after, before))
+        ratio = new / np.maximum(old, DARKEST)
         cover = self.mask[rows][changed][:, None]
         return changed, source[changed] * (1 + cover * (ratio - 1))
+
+    def _captured(self, skins: Map) -> Map:
+        """(n, 5) skins → (n, 3) what the model gives under the light of the capture, gains left."""
+        colours = load_model(self.model).decode(skins)
+        if self.calibration.conversion is None:
+            return colours
+        return replace(self.calibration, gains=(1.0, 1.0, 1.0)).undo(colours)
 
     def residual(self) -> Map:
         """(H, W, 3) capture over model of the estimate: what the model does not explain, 1 = all.

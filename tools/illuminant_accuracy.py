@@ -1,0 +1,76 @@
+"""Rewrites the tables of docs/colour.md from measured skins: `python tools/illuminant_accuracy.py`.
+
+Needs the larger data beside the project, or its folder as the only argument.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+from pages import rewrite
+
+from cutis.albedo import albedo_space, uniform
+from cutis.colour import delta_e, is_skin_colour, light_conversion, reflectance_to_rgb
+from cutis.figures.measured import BANDS, measured_skins
+from cutis.figures.subjects import data_folder
+from cutis.optics import WAVELENGTHS
+
+LIGHTS = ("A", "D50", "D75", "FL1", "FL2", "FL7", "FL11", "FL12", "HP1", "LED-B3", "LED-V1",
+          "LED-RGB1", "D65-prime", "D65-prime-RGB", "D65-prime-RGBW")  # fmt: skip
+
+
+def fitted(light: str, spectra: np.ndarray) -> np.ndarray:
+    """The 3 × 3 conversion that suits the skins of the albedo space best, for comparison."""
+    here = reflectance_to_rgb(spectra, WAVELENGTHS, light)
+    there = reflectance_to_rgb(spectra, WAVELENGTHS)
+    weight = 1 / there.mean(axis=1, keepdims=True)
+    return np.linalg.lstsq(here * weight, there * weight, rcond=None)[0]
+
+
+def main() -> None:
+    data = data_folder(Path(sys.argv[1]) if len(sys.argv) > 1 else None)
+    if data is None:
+        raise SystemExit("the larger data is absent; name its folder")
+    skins = measured_skins(data)
+    truth = reflectance_to_rgb(skins, BANDS)
+    space = albedo_space()
+    synthetic = uniform(20_000, 5)
+    synthetic = space.reflectance(synthetic[is_skin_colour(space.rgb(synthetic))])
+    rows = [
+        f"ΔE00 to the true colour under D65 of {len(skins)} measured skins, mean / p95:",
+        "",
+        "| light | as captured | converted | a 3 × 3 fitted to the albedo space |",
+        "|---|---|---|---|",
+    ]
+    for light in LIGHTS:
+        seen = reflectance_to_rgb(skins, BANDS, light)
+        cells = [
+            delta_e(colours, truth)
+            for colours in (seen, seen @ light_conversion(light).T, seen @ fitted(light, synthetic))
+        ]
+        rows.append(
+            f"| {light} | "
+            + " | ".join(f"{e.mean():.2f} / {np.percentile(e, 95):.2f}" for e in cells)
+            + " |"
+        )
+    variants = [light for light in LIGHTS if light.startswith("D65-prime")]
+    choice = [
+        "ΔE00, mean / p95, when a capture under the light of the row is converted as if under that "
+        "of the column:",
+        "",
+        "| captured under | " + " | ".join(variants) + " |",
+        "|---" * (len(variants) + 1) + "|",
+    ]
+    for row in variants:
+        seen = reflectance_to_rgb(skins, BANDS, row)
+        errors = [delta_e(seen @ light_conversion(column).T, truth) for column in variants]
+        choice.append(
+            f"| {row} | "
+            + " | ".join(f"{e.mean():.2f} / {np.percentile(e, 95):.2f}" for e in errors)
+            + " |"
+        )
+    rewrite("colour.md", lights="\n".join(rows), prime="\n".join(choice))
+
+
+if __name__ == "__main__":
+    main()
