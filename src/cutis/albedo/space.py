@@ -8,7 +8,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from cutis.albedo.spectral_table import CELLS, SpectralTable, spectral_table
 from cutis.colour import spectrum_to_rgb
-from cutis.optics import ALIAGA2022, WAVELENGTHS, Tissue
+from cutis.optics import (
+    ALIAGA2022,
+    EPIDERMAL_BLOOD,
+    NAMES,
+    PARAMETERS,
+    WAVELENGTHS,
+    Parameter,
+    Tissue,
+)
 
 BAND = 1 << 18
 """Texels converted at a time."""
@@ -17,7 +25,8 @@ BAND = 1 << 18
 class AlbedoSpace:
     """Forward model of a tissue: parameters → albedo, exact to 1e-4 (docs/albedo.md).
 
-    Parameters are (..., 5) in the units and order of `optics.PARAMETERS`.
+    Parameters are (..., 5) in the units and order of `optics.PARAMETERS`; of a tissue with other
+    free parameters, (..., n) in those of `tissue.parameters`.
     """
 
     def __init__(self, table: SpectralTable) -> None:
@@ -54,7 +63,7 @@ class AlbedoSpace:
         """(..., 5) parameters → (..., 41) reflectance in [0, 1] at `optics.WAVELENGTHS`."""
         from cutis.albedo.spline import reflectance_kernel
 
-        flat, shape = _rows(parameters)
+        flat, shape = self._rows(parameters)
         out = np.empty((len(flat), len(WAVELENGTHS)), dtype=np.float32)
         for band in _bands(len(flat)):
             reflectance_kernel(_float32(flat[band]), *self._model, out[band])
@@ -64,7 +73,7 @@ class AlbedoSpace:
         """(..., 5) parameters → (..., 3) linear sRGB under D65."""
         from cutis.albedo.spline import rgb_kernel
 
-        flat, shape = _rows(parameters)
+        flat, shape = self._rows(parameters)
         out = np.empty((len(flat), 3), dtype=np.float32)
         for band in _bands(len(flat)):
             rgb_kernel(_float32(flat[band]), *self._model, self._to_rgb, out[band])
@@ -76,19 +85,37 @@ class AlbedoSpace:
         """(..., 5) parameters → (..., 3) linear sRGB and (..., 3, 5) its slope per parameter."""
         from cutis.albedo.spline import rgb_gradient_kernel
 
-        flat, shape = _rows(parameters)
+        flat, shape = self._rows(parameters)
         out = np.empty((len(flat), 3), dtype=np.float32)
-        slope = np.empty((len(flat), 3, 5), dtype=np.float32)
+        slope = np.empty((len(flat), 3, flat.shape[1]), dtype=np.float32)
         for band in _bands(len(flat)):
             rgb_gradient_kernel(
                 _float32(flat[band]), *self._model, self._to_rgb, out[band], slope[band]
             )
-        return out.reshape(*shape, 3), slope.reshape(*shape, 3, 5)
+        slope = slope[..., list(self.places)]
+        return out.reshape(*shape, 3), slope.reshape(*shape, 3, len(self.places))
 
+    @cached_property
+    def every_parameter(self) -> tuple[Parameter, ...]:
+        """What kernels take: the five, fixed or free, and epidermal blood where there is any."""
+        return (*PARAMETERS, EPIDERMAL_BLOOD) if self.tissue.epidermal_blood else PARAMETERS
 
-def _rows(parameters: ArrayLike) -> tuple[NDArray[np.floating], tuple[int, ...]]:
-    values = np.asarray(parameters)
-    return values.reshape(-1, 5), values.shape[:-1]
+    @cached_property
+    def places(self) -> tuple[int, ...]:
+        """Where the tissue's free parameters stand among those."""
+        return tuple(self.every_parameter.index(p) for p in self.tissue.parameters)
+
+    def _rows(self, parameters: ArrayLike) -> tuple[NDArray[np.floating], tuple[int, ...]]:
+        """(n, 5 or 6) of every parameter, those that the tissue holds included, and the shape."""
+        values = np.asarray(parameters)
+        flat = values.reshape(-1, len(self.places))
+        if self.tissue.parameters != PARAMETERS:
+            whole = np.empty((len(flat), len(self.every_parameter)))
+            for name, value in self.tissue.fixed:
+                whole[:, NAMES.index(name)] = value
+            whole[:, self.places] = flat
+            flat = whole
+        return flat, values.shape[:-1]
 
 
 def _float32(values: NDArray[np.floating]) -> NDArray[np.float32]:

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutis.optics import ALIAGA2022, WAVELENGTHS, Tissue
-from cutis.optics.parameters import BLOOD, MELANIN, THICKNESS
+from cutis.optics.parameters import BLOOD, EPIDERMAL_BLOOD, MELANIN, THICKNESS
 from cutis.transport import two_layer_albedo
 
 NODES = (18, 18, 16)
@@ -47,15 +47,22 @@ class SpectralTable:
 
 
 def axis_ranges(tissue: Tissue) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """(41, 3) lowest and highest μa_e^¼, μa_d^¼ and log t that the parameter ranges reach."""
+    """(41, 3) lowest and highest μa_e^¼, μa_d^¼ and log t that the parameter ranges reach.
+
+    A thickness that is the same for all skins has a narrow range around it.
+    """
     share = np.array([0.0, 0.0, 1.0, 1.0])
     melanin = np.array([MELANIN.low, MELANIN.high, MELANIN.low, MELANIN.high])
     blood = np.array([BLOOD.low, BLOOD.high, BLOOD.low, BLOOD.high])
     epidermis = tissue.epidermis_absorption(melanin, share, WAVELENGTHS)
     dermis = tissue.dermis_absorption(blood, share, WAVELENGTHS)
+    if tissue.epidermal_blood:
+        epidermis += np.array([[0.0], [EPIDERMAL_BLOOD.high]]).repeat(2, 0) * dermis.max(0)
     ones = np.ones(len(WAVELENGTHS))
-    low = [epidermis.min(0) ** 0.25, dermis.min(0) ** 0.25, np.log(THICKNESS.low) * ones]
-    high = [epidermis.max(0) ** 0.25, dermis.max(0) ** 0.25, np.log(THICKNESS.high) * ones]
+    held = dict(tissue.fixed).get("thickness")
+    thin, thick = (THICKNESS.low, THICKNESS.high) if held is None else (held / 1.01, held * 1.01)
+    low = [epidermis.min(0) ** 0.25, dermis.min(0) ** 0.25, np.log(thin) * ones]
+    high = [epidermis.max(0) ** 0.25, dermis.max(0) ** 0.25, np.log(thick) * ones]
     return np.stack(low, -1), np.stack(high, -1)
 
 
@@ -79,6 +86,7 @@ def build(
             dimension=tissue.dimension,
             refractive_index=tissue.outer_index,
             count=ORDINATES,
+            dermis_scattering=float(tissue.scattering(WAVELENGTHS)[i]) * tissue.dermis_scattering,
         )
 
     nodes = np.empty((len(WAVELENGTHS), *NODES))

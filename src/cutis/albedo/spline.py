@@ -1,6 +1,7 @@
 """Compiled evaluation of a spectral table: parameters → reflectance or RGB, with gradients.
 
-Kernels run over texels on all cores, in float32. Parameters (n, 5) are in their units and order.
+Kernels run over texels on all cores, in float32. Parameters (n, 5) are in their units and order;
+a sixth, where there is one, is the blood of the epidermis.
 `spectra` (6, bands) holds μa of eumelanin, pheomelanin, bare epidermis, deoxygenated blood,
 oxygenated blood and bare dermis; `low`, `scale` (bands, 3) turn μa_e^¼, μa_d^¼ and log t into
 cells. Tests hold the result against the exact solver.
@@ -69,6 +70,8 @@ def _mixtures(x: Any, spectra: Any, b: Any) -> Any:
     pigment = x[3] * spectra[0, b] + (ONE - x[3]) * spectra[1, b]
     blood = x[4] * spectra[4, b] + (ONE - x[4]) * spectra[3, b]
     epidermis = x[0] * pigment + (ONE - x[0]) * spectra[2, b]
+    if len(x) > 5:
+        epidermis += x[5] * (blood - spectra[2, b])
     return pigment, blood, epidermis, x[1] * blood + (ONE - x[1]) * spectra[5, b]
 
 
@@ -122,7 +125,7 @@ def rgb_kernel(
 def rgb_and_slope(
     x: Any, spectra: Any, table: Any, low: Any, scale: Any, to_rgb: Any, rgb: Any, slope: Any
 ) -> None:
-    """Fills rgb (3,) and slope (3, 5) = ∂RGB/∂parameter, per unit of each, of one skin x (5,)."""
+    """Fills rgb (3,) and slope (3, n) = ∂RGB/∂parameter, per unit of each, of one skin x (n,)."""
     quarter = np.float32(0.25)
     k, ft = locate_cell(np.log(x[2]), low[0, 2], scale[0, 2], table.shape[3])
     wt, dwt = cubic_weights(ft), _slopes(ft)
@@ -146,18 +149,22 @@ def rgb_and_slope(
             by_e * x[0] * (spectra[0, b] - spectra[1, b]),
             by_d * x[1] * (spectra[4, b] - spectra[3, b]),
         )
+        in_epidermis = by_e * (blood - spectra[2, b])
         for channel in range(3):
             weight = to_rgb[b, channel]
             rgb[channel] += albedo * weight
             for p in range(5):
                 slope[channel, p] += partials[p] * weight
+            if len(x) > 5:
+                slope[channel, 4] += by_e * x[5] * (spectra[4, b] - spectra[3, b]) * weight
+                slope[channel, 5] += in_epidermis * weight
 
 
 @njit(parallel=True, fastmath=True, cache=True)
 def rgb_gradient_kernel(
     skins: Any, spectra: Any, table: Any, low: Any, scale: Any, to_rgb: Any, out: Any, slope: Any
 ) -> None:
-    """`rgb_and_slope` of every skin: fills out (n, 3) and slope (n, 3, 5)."""
+    """`rgb_and_slope` of every skin: fills out (n, 3) and slope (n, 3, 5 or 6)."""
     n = skins.shape[0]
     for block in prange((n + BLOCK - 1) // BLOCK):
         for row in range(block * BLOCK, min(n, (block + 1) * BLOCK)):

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutis.albedo import AlbedoSpace
-from cutis.optics import PARAMETERS
+from cutis.optics import NAMES
 
 
 def logit(coordinates: ArrayLike) -> NDArray[np.float32]:
@@ -35,29 +35,39 @@ def fit(
     tolerance: float,
     iterations: int = 30,
 ) -> NDArray[np.float32]:
-    """(n, 3) linear sRGB → (n, 5) coordinates u of the best skins.
+    """(n, 3) linear sRGB → (n, p) coordinates u of the best skins.
 
-    `centres` (n, 5) or (5,) are the coordinates that the prior expects, `precision` (5, 5) its P.
+    The p free parameters are those of the space's tissue, in their order: the five, unless it says
+    otherwise. `centres` (n, p) or (p,) are the coordinates that the prior expects, `precision`
+    (p, p) its P.
     """
     from cutis.inverse.fit_kernel import fit_kernel
 
     c = np.ascontiguousarray(colours, dtype=np.float32)
-    centre = np.ascontiguousarray(np.broadcast_to(logit(centres), (len(c), 5)))
+    every, free = space.every_parameter, list(space.places)
+    given = np.broadcast_to(logit(centres), (len(c), len(free)))
+    centre = np.zeros((len(c), len(every)), dtype=np.float32)
+    centre[:, free] = given
     weight = 1 / (tolerance * (np.maximum(c.mean(axis=1), 0.0) + 0.01) ** (2 / 3))
-    power = np.array([p.root for p in PARAMETERS], dtype=np.float32)
-    low = np.array([p.low ** (1 / p.root) for p in PARAMETERS], dtype=np.float32)
-    high = np.array([p.high ** (1 / p.root) for p in PARAMETERS], dtype=np.float32)
+    power = np.array([p.root for p in every], dtype=np.float32)
+    low = np.array([p.low ** (1 / p.root) for p in every], dtype=np.float32)
+    span = np.array([p.high ** (1 / p.root) for p in every], dtype=np.float32) - low
+    for name, value in space.tissue.fixed:  # a range without extent: nothing moves there
+        i = NAMES.index(name)
+        low[i], span[i] = value ** (1 / every[i].root), 0.0
+    prior = np.eye(len(every), dtype=np.float32)
+    prior[np.ix_(free, free)] = precision
     out = np.empty_like(centre)
     fit_kernel(
         c,
         centre,
         weight.astype(np.float32),
-        np.asarray(precision, dtype=np.float32),
+        prior,
         iterations,
         low,
-        high - low,
+        span,
         power,
         space.model,
         out,
     )
-    return logistic(out)
+    return logistic(out[:, free])

@@ -21,14 +21,14 @@ def _evaluate(
     z: Any, weight: Any, colour: Any, root_low: Any, root_span: Any, power: Any, model: Any,
     x: Any, rgb: Any, slope: Any, residual: Any
 ) -> None:  # fmt: skip
-    """Weighted residual (3,) and its slope (3, 5) by logits z (5,)."""
-    for p in range(5):
+    """Weighted residual (3,) and its slope (3, n) by logits z (n,)."""
+    for p in range(len(z)):
         u = np.float32(1) / (np.float32(1) + np.exp(-z[p]))
         root = root_low[p] + u * root_span[p]
         x[p] = root ** power[p]
     spectra, table, low, scale, to_rgb = model
     rgb_and_slope(x, spectra, table, low, scale, to_rgb, rgb, slope)
-    for p in range(5):
+    for p in range(len(z)):
         u = np.float32(1) / (np.float32(1) + np.exp(-z[p]))
         root = root_low[p] + u * root_span[p]
         outer = power[p] * root ** (power[p] - np.float32(1))  # d root^power / d root
@@ -44,31 +44,32 @@ def _cost(z: Any, centre: Any, precision: Any, residual: Any) -> Any:
     total = np.float32(0)
     for c in range(3):
         total += residual[c] * residual[c]
-    for p in range(5):
-        for q in range(5):
+    for p in range(len(z)):
+        for q in range(len(z)):
             total += (z[p] - centre[p]) * precision[p, q] * (z[q] - centre[q])
     return total
 
 
 @njit(fastmath=True, cache=True)
 def _solve(a: Any, g: Any, step: Any) -> None:
-    """step (5,) = −a⁻¹ g by Cholesky, in place; a (5, 5) symmetric positive definite."""
-    for j in range(5):
+    """step (n,) = −a⁻¹ g by Cholesky, in place; a (n, n) symmetric positive definite."""
+    count = len(step)
+    for j in range(count):
         for k in range(j):
             a[j, j] -= a[j, k] * a[j, k]
         a[j, j] = np.sqrt(max(a[j, j], 1e-12))
-        for i in range(j + 1, 5):
+        for i in range(j + 1, count):
             for k in range(j):
                 a[i, j] -= a[i, k] * a[j, k]
             a[i, j] /= a[j, j]
-    for i in range(5):
+    for i in range(count):
         s = -g[i]
         for k in range(i):
             s -= a[i, k] * step[k]
         step[i] = s / a[i, i]
-    for i in range(4, -1, -1):
+    for i in range(count - 1, -1, -1):
         s = step[i]
-        for k in range(i + 1, 5):
+        for k in range(i + 1, count):
             s -= a[k, i] * step[k]
         step[i] = s / a[i, i]
 
@@ -78,7 +79,7 @@ def fit_kernel(
     colours: Any, centres: Any, weights: Any, precision: Any, iterations: Any,
     root_low: Any, root_span: Any, power: Any, model: Any, out: Any
 ) -> None:  # fmt: skip
-    """Fills out (n, 5) with the best logits, by Levenberg–Marquardt from `centres` (n, 5).
+    """Fills out (n, p) with the best logits, by Levenberg–Marquardt from `centres` (n, p).
 
     Minimises |weight (RGB − colour)|² + (z − centre)ᵀ precision (z − centre) of each colour.
     """
@@ -95,10 +96,11 @@ def _fit_block(
     block: Any, colours: Any, centres: Any, weights: Any, precision: Any, iterations: Any,
     root_low: Any, root_span: Any, power: Any, model: Any, out: Any
 ) -> None:  # fmt: skip
-    x, rgb, residual = np.empty(5, np.float32), np.empty(3, np.float32), np.empty(3, np.float32)
-    slope, trial_slope = np.empty((3, 5), np.float32), np.empty((3, 5), np.float32)
-    trial, trial_residual = np.empty(5, np.float32), np.empty(3, np.float32)
-    a, g, step = np.empty((5, 5)), np.empty(5), np.empty(5)
+    count = out.shape[1]
+    x, rgb, residual = np.empty(count, np.float32), np.empty(3, np.float32), np.empty(3, np.float32)
+    slope, trial_slope = np.empty((3, count), np.float32), np.empty((3, count), np.float32)
+    trial, trial_residual = np.empty(count, np.float32), np.empty(3, np.float32)
+    a, g, step = np.empty((count, count)), np.empty(count), np.empty(count)
     for row in range(block * BLOCK, min(colours.shape[0], (block + 1) * BLOCK)):
         z, centre, colour, weight = out[row], centres[row], colours[row], weights[row]
         z[:] = centre
@@ -106,9 +108,9 @@ def _fit_block(
         _evaluate(z, weight, colour, root_low, root_span, power, model, x, rgb, slope, residual)
         cost = _cost(z, centre, precision, residual)
         for _ in range(iterations):
-            for p in range(5):
+            for p in range(count):
                 g[p] = 0.0
-                for q in range(5):
+                for q in range(count):
                     g[p] += precision[p, q] * (z[q] - centre[q])
                     a[p, q] = precision[p, q]
                     for c in range(3):
@@ -117,7 +119,7 @@ def _fit_block(
                     g[p] += slope[c, p] * residual[c]
                 a[p, p] *= 1.0 + damping
             _solve(a, g, step)
-            for p in range(5):
+            for p in range(count):
                 move = min(max(step[p], -2.0), 2.0)
                 trial[p] = min(max(z[p] + np.float32(move), -EDGE), EDGE)
             _evaluate(

@@ -77,7 +77,8 @@ class LookupTensor:
         if not np.isfinite(queries).all():
             raise CutisError("some colours are NaN or infinite; mask them out")
         out = np.empty(len(queries), dtype=np.int64)
-        nearest_kernel(queries, curve_order(queries), *self._tree, out)
+        points, index, low, high, starts = self._tree
+        nearest_kernel(queries, curve_order(queries), points, index, low, high, starts, out)
         return out
 
     def encode(self, colours: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -1,6 +1,7 @@
 """What skin is made of: chromophores, tissue layers, parameters."""
 
 from cutis.optics.parameters import (
+    EPIDERMAL_BLOOD,
     NAMES,
     PARAMETERS,
     TYPICAL,
@@ -10,10 +11,12 @@ from cutis.optics.parameters import (
     skin,
     to_coordinates,
 )
-from cutis.optics.tissue import ALIAGA2022, WAVELENGTHS, Tissue
+from cutis.optics.tissue import ALIAGA2022, GITLINA2020, WAVELENGTHS, Tissue
 
 __all__ = [
     "ALIAGA2022",
+    "EPIDERMAL_BLOOD",
+    "GITLINA2020",
     "NAMES",
     "PARAMETERS",
     "TYPICAL",

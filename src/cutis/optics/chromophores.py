@@ -61,6 +61,14 @@ def baseline(
     return scale * np.asarray(wavelength, dtype=np.float64) ** power
 
 
+def baseline_jacques(
+    wavelength: ArrayLike, offset: float = 0.244, scale: float = 85.3
+) -> NDArray[np.float64]:
+    """Bloodless, melanin-free skin, offset + scale · exp(−(λ − 154) / 66.2) cm⁻¹ [jacques1998]."""
+    lam = np.asarray(wavelength, dtype=np.float64)
+    return offset + scale * np.exp(-(lam - 154.0) / 66.2)
+
+
 def oxyhemoglobin(wavelength: ArrayLike, concentration: float = 150.0) -> NDArray[np.float64]:
     """Oxygenated haemoglobin at `concentration` g/L of blood [prahl1999hemoglobin]."""
     molar = concentration / HEMOGLOBIN_MOLAR_MASS

@@ -55,6 +55,10 @@ EUMELANIN = Parameter("eumelanin", "φ_m", "eumelanin share of melanin", "1", 0.
 OXYGENATION = Parameter(
     "oxygenation", "1−φ_h", "oxygenated share of haemoglobin", "1", 0.0, 0.999, 1
 )
+EPIDERMAL_BLOOD = Parameter(
+    "epidermal_blood", "V_be", "blood volume fraction, epidermis", "1", 1e-5, 0.1, 4
+)
+"""Only of tissues that have blood in their epidermis; its range is this project's choice."""
 
 PARAMETERS = (MELANIN, BLOOD, THICKNESS, EUMELANIN, OXYGENATION)
 """The five, in the order of every (..., 5) array of this package."""

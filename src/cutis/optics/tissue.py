@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from cutis.errors import CutisError
 from cutis.optics import chromophores
+from cutis.optics.parameters import EPIDERMAL_BLOOD, PARAMETERS, Parameter, parameter
 
 WAVELENGTHS = np.arange(380.0, 781.0, 10.0)
 """nm, the 41 bands of every spectrum of this package."""
@@ -19,7 +20,13 @@ WAVELENGTHS.flags.writeable = False
 
 @dataclass(frozen=True)
 class Tissue:
-    """Constants shared by all skins of a model. Concentrations in g/L, scattering in cm⁻¹."""
+    """Constants shared by all skins of a model. Concentrations in g/L, scattering in cm⁻¹.
+
+    `fixed` holds (name, value) of standard parameters that all skins share; `epidermal_blood` says
+    that blood in the epidermis is a parameter too. The baseline is the sum of a power law
+    [saidi1992] and an exponential [jacques1998]. `dermis_scattering` is the dermis' scattering over
+    the epidermis'.
+    """
 
     name: str
     eumelanin_scale: float = 6.6e11
@@ -28,6 +35,8 @@ class Tissue:
     pheomelanin_power: float = -4.75
     baseline_scale: float = 7.84e8
     baseline_power: float = -3.255
+    baseline_offset: float = 0.0
+    baseline_exponential: float = 0.0
     hemoglobin: float = 150.0
     bilirubin: float = 0.05
     beta_carotene_epidermis: float = 2.1e-4
@@ -35,11 +44,14 @@ class Tissue:
     scattering_500: float = 36.4
     rayleigh_fraction: float = 0.48
     mie_power: float = 0.22
+    dermis_scattering: float = 1.0
     anisotropy_offset: float = 0.62
     anisotropy_slope: float = 0.29e-3
     refractive_index: float = 1.4
     dimension: int = 2
     boundary: str = "matched"
+    fixed: tuple[tuple[str, float], ...] = ()
+    epidermal_blood: bool = False
 
     def __post_init__(self) -> None:
         if self.dimension not in (2, 3):
@@ -50,6 +62,17 @@ class Tissue:
             )
         if not 0 <= self.rayleigh_fraction <= 1:
             raise CutisError(f"tissue {self.name}: rayleigh_fraction must lie in 0 to 1")
+        if not self.dermis_scattering > 0:
+            raise CutisError(f"tissue {self.name}: dermis_scattering must be above 0")
+        fixed = tuple((str(name), parameter(name).check(value)) for name, value in self.fixed)
+        object.__setattr__(self, "fixed", fixed)
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """The free parameters of a skin, in the order of its arrays."""
+        held = dict(self.fixed)
+        extra = (EPIDERMAL_BLOOD,) if self.epidermal_blood else ()
+        return tuple(p for p in PARAMETERS if p.name not in held) + extra
 
     @property
     def outer_index(self) -> float:
@@ -66,7 +89,10 @@ class Tissue:
 
     def baseline(self, wavelength: ArrayLike) -> NDArray[np.float64]:
         """μa of tissue without melanin and blood, cm⁻¹."""
-        return chromophores.baseline(wavelength, self.baseline_scale, self.baseline_power)
+        power = chromophores.baseline(wavelength, self.baseline_scale, self.baseline_power)
+        return power + chromophores.baseline_jacques(
+            wavelength, self.baseline_offset, self.baseline_exponential
+        )
 
     def anisotropy(self, wavelength: ArrayLike) -> NDArray[np.float64]:
         """g = ⟨cos θ⟩ of both layers; 0.73 at 380 nm to 0.85 at 780 nm [vangemert1989]."""
@@ -74,14 +100,14 @@ class Tissue:
         return self.anisotropy_offset + self.anisotropy_slope * lam
 
     def reduced_scattering(self, wavelength: ArrayLike) -> NDArray[np.float64]:
-        """μs′ of both layers, cm⁻¹ [jacques2013, coefficients of bashkatov2011]."""
+        """μs′ of the epidermis, cm⁻¹ [jacques2013, coefficients of bashkatov2011]."""
         x = np.asarray(wavelength, dtype=np.float64) / 500.0
         rayleigh = self.rayleigh_fraction * x**-4.0
         mie = (1.0 - self.rayleigh_fraction) * x**-self.mie_power
         return self.scattering_500 * (rayleigh + mie)
 
     def scattering(self, wavelength: ArrayLike) -> NDArray[np.float64]:
-        """μs = μs′ / (1 − g) of both layers, cm⁻¹."""
+        """μs = μs′ / (1 − g), cm⁻¹, of the epidermis and, times `dermis_scattering`, the dermis."""
         return self.reduced_scattering(wavelength) / (1.0 - self.anisotropy(wavelength))
 
     def epidermis_absorption(
@@ -122,3 +148,22 @@ class Tissue:
 
 ALIAGA2022 = Tissue(name="aliaga2022")
 """The model of the paper: flatland transport, index-matched boundary [aliaga2022]."""
+
+GITLINA2020 = Tissue(
+    name="gitlina2020",
+    baseline_scale=0.0,
+    baseline_offset=0.244,
+    baseline_exponential=85.3,
+    bilirubin=0.0,
+    beta_carotene_epidermis=0.0,
+    beta_carotene_dermis=0.0,
+    scattering_500=72.8,
+    dermis_scattering=0.5,
+    dimension=3,
+    boundary="fresnel",
+    fixed=(("thickness", 250.0), ("oxygenation", 0.75)),
+    epidermal_blood=True,
+)
+"""Melanin, its blend, blood in the dermis and in the epidermis are free; thickness and oxygenation
+are not [gitlina2020, with the constants of donner2006 and donner2008]. Physical walks and a
+dielectric boundary, as the dipoles of those models have; solved exactly here."""

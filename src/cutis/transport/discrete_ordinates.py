@@ -183,13 +183,15 @@ def two_layer_albedo(
     refractive_index: float = 1.0,
     incidence: float | str = "lambertian",
     count: int = 24,
+    dermis_scattering: float | None = None,
 ) -> Array:
     """Albedo (E, D, T) of epidermis over a semi-infinite dermis for all combinations.
 
     `epidermis_absorption` (E,) and `dermis_absorption` (D,) in cm⁻¹, `thickness` (T,) of the
     epidermis in µm; one scattering coefficient (cm⁻¹) and anisotropy for both layers, as at one
-    wavelength. Light starts inside, Lambertian or as a beam at cosine `incidence`;
-    `refractive_index` 1 is the index-matched boundary. Same method as `stack_balance`, batched.
+    wavelength, unless `dermis_scattering` gives the dermis its own. Light starts inside, Lambertian
+    or as a beam at cosine `incidence`; `refractive_index` 1 is the index-matched boundary. Same
+    method as `stack_balance`, batched.
     Raises CutisError for coefficients that are not physical.
     """
     epidermis, dermis, microns = (
@@ -203,7 +205,9 @@ def two_layer_albedo(
     fresnel = fresnel_reflectance(nodes.cosine, 1.0 / refractive_index)
     source = flux / (flux @ flux) if beam is None else np.eye(len(flux))[-1] / flux[-1]
 
-    k, _, dual = modes(nodes, dermis, scattering, anisotropy)
+    below_scattering = scattering if dermis_scattering is None else dermis_scattering
+    _check_two_layers(epidermis, dermis, microns, below_scattering, anisotropy)
+    k, _, dual = modes(nodes, dermis, below_scattering, anisotropy)
     below = _half_space(k, dual)
     rates, mixing, _ = modes(nodes, epidermis, scattering, anisotropy)
     result = np.empty((len(rates), len(below), len(microns)))
