@@ -10,6 +10,7 @@ from cutis.transport import (
     Layer,
     adding_doubling,
     fresnel_reflectance,
+    kubelka_munk,
     stack_balance,
     two_layer_albedo,
 )
@@ -126,5 +127,18 @@ def comparison() -> str:
     return "\n".join(lines)
 
 
+def two_flux() -> str:
+    lines = [
+        "| μa / μs′ | exact | " + " | ".join(kubelka_munk.CONVERSIONS) + " |",
+        "|---|---|---|---|---|",
+    ]
+    for ratio in (0.001, 0.01, 0.05, 0.1, 0.3, 1.0, 3.0):
+        pairs = [kubelka_munk.coefficients(20 * ratio, 20.0, n) for n in kubelka_munk.CONVERSIONS]
+        exact = stack_balance([Layer(20 * ratio, 100.0, 0.8)], dimension=3).reflected
+        cells = [f"{float(kubelka_munk.half_space(*pair)):.4f}" for pair in pairs]
+        lines.append(f"| {ratio} | {exact:.4f} | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
 if __name__ == "__main__":
-    rewrite("transport.md", convergence=convergence(), published=comparison())
+    rewrite("transport.md", convergence=convergence(), published=comparison(), kubelka=two_flux())

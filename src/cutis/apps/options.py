@@ -16,7 +16,10 @@ White = Annotated[
 ]
 Exposure = Annotated[str, typer.Option("--exposure", help="none, auto, or one gain: 1.2.")]
 ModelName = Annotated[
-    str, typer.Option("--model", help="default, aliaga2022, or a .safetensors file of weights.")
+    str,
+    typer.Option(
+        "--model", help="default, aliaga2022, kubelka-munk, or a .safetensors file of weights."
+    ),
 ]
 Method = Annotated[
     str | None,

@@ -2,7 +2,7 @@
 
 `default` reads the baked inverse and decodes through the exact albedo space;
 `aliaga2022` is the paper's pair of networks, trained by `cutis train`; `lookup` and `lookup-55k`
-are its look-up tensors of 256 000 and 55 296 skins.
+are its look-up tensors of 256 000 and 55 296 skins, `kubelka-munk` the two-parameter baseline.
 """
 
 from collections.abc import Callable
@@ -20,7 +20,7 @@ from cutis.inverse.lookup import SHAPES, lookup_tensor
 from cutis.inverse.network import Perceptron, load_weights
 from cutis.optics import from_coordinates, to_coordinates
 
-MODELS = ("default", "aliaga2022", *SHAPES)
+MODELS = ("default", "aliaga2022", *SHAPES, "kubelka-munk")
 """Names that `load_model` knows; it also takes the path of a weights file."""
 BAND = 1 << 18
 """Texels converted at a time."""
@@ -73,6 +73,11 @@ def load_model(name: str = "default") -> Model:
     if name in SHAPES:
         tensor = lookup_tensor(name)
         return Model(name, tensor.encode, tensor.decode)
+    if name == "kubelka-munk":
+        from cutis.inverse.kubelka_munk import kubelka_munk_inverse
+
+        baseline = kubelka_munk_inverse()
+        return Model(name, baseline.encode, baseline.decode)
     if name in MODELS:
         with resources.as_file(weights.joinpath(f"{name}.safetensors")) as file:
             return _networks(name, file)
