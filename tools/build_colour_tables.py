@@ -89,9 +89,9 @@ def main() -> None:
     )
     _write(
         "d65_prime.csv",
-        "# CONSTRUCTED, not measured: no spectrum of the light D65' of Gitlina et al. 2020 was "
-        "ever\n# published. LED mixtures whose white is exactly x 0.3046, y 0.3209, which is known "
-        "of it.\n"
+        "# Source: CONSTRUCTED, not measured: no spectrum of the light D65' of Gitlina et al. 2020 "
+        "was\n# ever published. LED mixtures whose white is exactly x 0.3046, y 0.3209, which is "
+        "known of it.\n"
         "# Unit: relative spectral power. docs/colour.md says what depends on the choice.\n",
         {name: _mixture(parts) for name, parts in MIXTURES.items()},
         "# Made by tools/build_colour_tables.py from CIE LED illuminants and the LED model of Ohno "

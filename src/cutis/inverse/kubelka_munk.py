@@ -1,7 +1,7 @@
 """Inverse of the Kubelka–Munk skin: the nearest colour on its two-dimensional surface.
 
-The surface is tabulated over the roots in which skins are even, searched for the nearest node
-exactly, and followed from there by Gauss–Newton steps on bicubic splines.
+The surface is tabulated finely over the roots in which skins are even, searched for the nearest
+node exactly, and left from there by one Gauss–Newton step.
 """
 
 from dataclasses import dataclass
@@ -15,10 +15,8 @@ from cutis.inverse.lookup import curve_order, search_tree
 from cutis.optics import PARAMETERS, to_coordinates
 from cutis.optics.parameters import BLOOD, MELANIN
 
-NODES = 240
+NODES = (1024, 512)
 """Nodes along melanin and along blood."""
-STEPS = 6
-"""Gauss–Newton steps from the nearest node."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,8 +30,8 @@ class KubelkaMunkInverse:
         """Roots of melanin and of blood at the nodes."""
         ranges = zip((self.skin.melanin, self.skin.blood), (MELANIN, BLOOD), strict=True)
         melanin, blood = (
-            np.linspace(low ** (1 / p.root), high ** (1 / p.root), NODES)
-            for (low, high), p in ranges
+            np.linspace(low ** (1 / p.root), high ** (1 / p.root), count)
+            for ((low, high), p), count in zip(ranges, NODES, strict=True)
         )
         return melanin, blood
 
@@ -41,6 +39,12 @@ class KubelkaMunkInverse:
     def _colours(self) -> NDArray[np.float64]:
         melanin, blood = self._axes
         return self.skin.rgb(melanin[:, None] ** MELANIN.root, blood[None, :] ** BLOOD.root)
+
+    @cached_property
+    def _away(self) -> NDArray[np.float64]:
+        """(nodes, 2, 3) how far to go in cells of either axis per difference in colour."""
+        slope = np.stack(np.gradient(self._colours, axis=(0, 1)), axis=-1).reshape(-1, 3, 2)
+        return np.linalg.pinv(slope, rcond=1e-4)
 
     @cached_property
     def _surface(self) -> list:
@@ -62,30 +66,12 @@ class KubelkaMunkInverse:
         points, index, low, high, starts = self._tree
         order = curve_order(queries)
         nearest_kernel(queries, order, points, index, low, high, starts, nearest)
-        axes = self._axes
-        x = np.stack([axes[0][nearest // NODES], axes[1][nearest % NODES]], axis=-1)
-        cell = np.array([axis[1] - axis[0] for axis in axes])
-        ends = np.array([[axis[0] for axis in axes], [axis[-1] for axis in axes]])
-        length = np.ones((len(x), 1))
-        missing = queries - self._at(x)
-        for _ in range(STEPS):
-            slope = np.stack([self._at(x, 1, 0), self._at(x, 0, 1)], axis=-1)
-            gradient = np.einsum("nci,nc->ni", slope, missing)
-            normal = np.einsum("nci,ncj->nij", slope, slope) + 1e-12 * np.eye(2)
-            step = np.linalg.solve(normal, gradient[..., None])[..., 0]
-            for held, free in ((0, 1), (1, 0)):  # against an end: move along it
-                stuck = ((x == ends[0]) & (step < 0) | (x == ends[1]) & (step > 0))[:, held]
-                step[stuck, free] = (gradient[:, free] / normal[:, free, free])[stuck]
-            trial = np.clip(x + length * np.clip(step, -cell, cell), *ends)
-            left = queries - self._at(trial)
-            better = (left**2).sum(axis=1) < (missing**2).sum(axis=1)
-            x[better], missing[better] = trial[better], left[better]
-            length[~better] *= 0.25
-        return x
-
-    def _at(self, x: NDArray[np.float64], *derivative: int) -> NDArray[np.float64]:
-        """(n, 3) colours, or their slopes, at (n, 2) roots."""
-        return np.stack([s.ev(x[:, 0], x[:, 1], *derivative) for s in self._surface], axis=-1)
+        missing = queries - self._colours.reshape(-1, 3)[nearest]
+        step = np.clip((self._away[nearest] @ missing[..., None])[..., 0], -0.5, 0.5)
+        cells = np.stack(np.divmod(nearest, NODES[1]), axis=-1) + step
+        return np.stack(
+            [np.interp(cells[:, i], np.arange(NODES[i]), self._axes[i]) for i in range(2)], -1
+        )
 
     def encode(self, colours: NDArray[np.float32]) -> NDArray[np.float32]:
         """(n, 3) linear sRGB → (n, 5) network coordinates, what the skin holds in all of them."""
@@ -104,7 +90,7 @@ class KubelkaMunkInverse:
                 ((self.skin.melanin, MELANIN), (self.skin.blood, BLOOD))
             )
         )
-        return self._at(np.stack([melanin, blood], axis=-1)).astype(np.float32)
+        return np.stack([s.ev(melanin, blood) for s in self._surface], -1).astype(np.float32)
 
 
 @lru_cache(maxsize=4)
