@@ -44,7 +44,7 @@ def test_skins_come_back(inverse):
     assert np.percentile(error, 90) < 0.1
     assert error.max() < 0.5  # of nearly black skins, in whose colour the two hardly differ
     light = melanin < 0.1
-    np.testing.assert_allclose(skins[light, 0], melanin[light], rtol=2e-2)
+    np.testing.assert_allclose(skins[light, 0], melanin[light], rtol=4e-2)
     assert np.allclose(skins[:, 2:], [200.0, 0.61, 0.75], rtol=1e-5)
 
 

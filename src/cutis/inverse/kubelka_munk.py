@@ -43,7 +43,7 @@ class KubelkaMunkInverse:
     @cached_property
     def _away(self) -> NDArray[np.float64]:
         """(nodes, 2, 3) how far to go in cells of either axis per difference in colour."""
-        slope = np.stack(np.gradient(self._colours, axis=(0, 1)), axis=-1).reshape(-1, 3, 2)
+        slope = np.stack(list(np.gradient(self._colours, axis=(0, 1))), axis=-1).reshape(-1, 3, 2)
         return np.linalg.pinv(slope, rcond=1e-4)
 
     @cached_property
