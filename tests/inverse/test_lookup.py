@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cutis.albedo import albedo_space
+from cutis.albedo import albedo_space, grid_skins
 from cutis.errors import CutisError
 from cutis.inverse import load_model
 from cutis.inverse.lookup import (
@@ -13,7 +13,6 @@ from cutis.inverse.lookup import (
     curve_order,
     lookup_tensor,
     tensor_of_spectra,
-    tensor_skins,
 )
 from cutis.optics import PARAMETERS, to_coordinates
 
@@ -60,7 +59,7 @@ def test_the_large_tensor_too():
 
 
 def test_the_first_of_equals_wins():
-    colours = np.zeros((len(tensor_skins(SMALL)), 3), dtype=np.float32)
+    colours = np.zeros((len(grid_skins(SMALL)), 3), dtype=np.float32)
     colours[700:] = 1.0
     tensor = LookupTensor(SMALL, colours)
     queries = np.array([[0.1, 0.1, 0.1], [0.9, 0.9, 0.9], [0.5, 0.5, 0.5]], dtype=np.float32)
@@ -92,18 +91,18 @@ def test_edits_are_quantised(small):
 
 
 def test_grid_spans_the_ranges():
-    skins = tensor_skins(SHAPES["lookup-55k"])
+    skins = grid_skins(SHAPES["lookup-55k"])
     assert skins.shape == (55_296, 5)
     for i, known in enumerate(PARAMETERS):
         assert np.isclose(skins[:, i].min(), known.low)
         assert np.isclose(skins[:, i].max(), known.high)
     u = to_coordinates(skins.reshape(64, 32, 3, 3, 3, 5))
     assert np.allclose(np.diff(u[:, 0, 0, 0, 0, 0]), 1 / 63)
-    assert tensor_skins((1, 1, 1, 1, 1)).shape == (1, 5)
+    assert grid_skins((1, 1, 1, 1, 1)).shape == (1, 5)
 
 
 def test_a_tensor_of_simulated_spectra():
-    skins = tensor_skins(SMALL)
+    skins = grid_skins(SMALL)
     tensor = tensor_of_spectra(SMALL, albedo_space().reflectance(skins))
     assert np.allclose(tensor.colours, build_tensor(SMALL).colours, atol=2e-6)
 

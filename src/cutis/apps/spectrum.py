@@ -52,7 +52,7 @@ def spectrum(
         spectra = albedo_space().reflectance(skin(given))[None]
         rows = [[f"{lam:g}", f"{r:.6f}"] for lam, r in zip(WAVELENGTHS, spectra[0], strict=True)]
     else:
-        columns, table, parameters = _read(skins)
+        columns, table, parameters = read_skins(skins)
         header = [*columns, *(f"{lam:g}" for lam in WAVELENGTHS)]
         spectra = albedo_space().reflectance(parameters)
         rows = [
@@ -77,7 +77,7 @@ def spectrum(
         typer.echo(f"wrote {output} and {plot}")
 
 
-def _read(path: Path) -> tuple[list[str], list[list[str]], "NDArray[np.float64]"]:
+def read_skins(path: Path) -> tuple[list[str], list[list[str]], "NDArray[np.float64]"]:
     """Header, cells and (n, 5) parameters of a CSV; CutisError names the row that is wrong."""
     import numpy as np
 

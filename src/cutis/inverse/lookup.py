@@ -13,10 +13,10 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cutis.albedo import AlbedoSpace, albedo_space
+from cutis.albedo import AlbedoSpace, albedo_space, grid_skins
 from cutis.colour import reflectance_to_rgb
 from cutis.errors import CutisError
-from cutis.optics import PARAMETERS, WAVELENGTHS, from_coordinates, to_coordinates
+from cutis.optics import WAVELENGTHS, to_coordinates
 
 SHAPES = {"lookup": (64, 32, 5, 5, 5), "lookup-55k": (64, 32, 3, 3, 3)}
 """The two tensors of the paper, melanin, blood, thickness, eumelanin and oxygenation."""
@@ -24,23 +24,6 @@ LEAF = 8
 """Most points in a leaf of the search tree."""
 CURVE_CELLS = 128
 """Cells per axis of the curve along which queries are sorted."""
-
-
-def tensor_skins(shape: Sequence[int]) -> NDArray[np.floating]:
-    """(n, 5) parameters of the nodes of a tensor of that shape, the last parameter fastest.
-
-    An axis of one node takes the middle of its range. Raises CutisError for shapes that are not
-    five positive whole numbers.
-    """
-    sizes = tuple(shape)
-    if len(sizes) != len(PARAMETERS) or any(int(n) != n or n < 1 for n in sizes):
-        raise CutisError(
-            f"a tensor needs {len(PARAMETERS)} sizes above zero, such as 64,32,5,5,5, not "
-            f"{','.join(str(n) for n in sizes) or 'none'}"
-        )
-    axes = [np.linspace(0.0, 1.0, n) if n > 1 else np.array([0.5]) for n in sizes]
-    nodes = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
-    return from_coordinates(nodes.reshape(-1, len(axes)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,14 +34,14 @@ class LookupTensor:
     colours: NDArray[np.float32]
 
     def __post_init__(self) -> None:
-        count = len(tensor_skins(self.shape))
+        count = len(grid_skins(self.shape))
         if self.colours.shape != (count, 3) or not np.isfinite(self.colours).all():
             raise CutisError(f"a tensor of {count} skins needs as many finite colours")
 
     @cached_property
     def skins(self) -> NDArray[np.float32]:
         """(n, 5) parameters of the nodes."""
-        return tensor_skins(self.shape).astype(np.float32)
+        return grid_skins(self.shape).astype(np.float32)
 
     @cached_property
     def _tree(self) -> tuple[NDArray[np.generic], ...]:
@@ -94,7 +77,7 @@ class LookupTensor:
 
 def build_tensor(shape: Sequence[int], space: AlbedoSpace | None = None) -> LookupTensor:
     """The tensor of that shape, its colours from the exact albedo space (a second)."""
-    colours = (space or albedo_space()).rgb(tensor_skins(shape))
+    colours = (space or albedo_space()).rgb(grid_skins(shape))
     return LookupTensor(tuple(int(n) for n in shape), colours)
 
 

@@ -256,6 +256,14 @@ def _mean_and_error(sums: Array, squares: Array, photons: int) -> tuple[Array, A
     return mean, np.sqrt(variance / photons)
 
 
+def check_photons(photons: int, seed: int) -> None:
+    """Raises CutisError unless so many photons can be walked from that seed."""
+    if isinstance(photons, bool) or int(photons) != photons or not 1 <= photons <= MOST:
+        raise CutisError(f"photons = {photons}: a walk needs a whole number from 1 to {MOST}")
+    if int(seed) != seed or not 0 <= seed < 1 << 64:
+        raise CutisError(f"seed = {seed}: it must be a whole number from 0 to 2⁶⁴ − 1")
+
+
 def _check(
     mu_a: Array, mu_s: Array, g: Array, depth: Array,
     photons: int, seed: int, dimension: int, refractive_index: float
@@ -276,10 +284,7 @@ def _check(
         raise CutisError(
             "a half space that absorbs nothing keeps photons for ever; give it a depth"
         )
-    if isinstance(photons, bool) or int(photons) != photons or not 1 <= photons <= MOST:
-        raise CutisError(f"photons = {photons}: a walk needs a whole number from 1 to {MOST}")
-    if int(seed) != seed or not 0 <= seed < 1 << 64:
-        raise CutisError(f"seed = {seed}: it must be a whole number from 0 to 2⁶⁴ − 1")
+    check_photons(photons, seed)
     if dimension not in (2, 3):
         raise CutisError(f"dimension = {dimension}: it must be 2 (flatland) or 3")
     if not (np.isfinite(refractive_index) and refractive_index >= 1):
