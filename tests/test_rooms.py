@@ -18,6 +18,7 @@ ROOMS = (
     "inverse",
     "textures",
     "maps",
+    "figures",
     "render",
     "apps",
 )

@@ -6,7 +6,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from cutis.apps import demo, edit, estimate, info, simulate, spectrum, train
+from cutis.apps import demo, edit, estimate, figures, info, simulate, spectrum, train
 from cutis.errors import CutisError
 
 app = typer.Typer(
@@ -44,6 +44,7 @@ app.command("estimate")(estimate.estimate)
 app.command("edit")(edit.edit)
 app.command("spectrum")(spectrum.spectrum)
 app.command("simulate")(simulate.simulate)
+app.command("figures")(figures.figures)
 app.command("info")(info.info)
 app.command("train")(train.train)
 app.command("demo")(demo.demo)

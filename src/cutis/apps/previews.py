@@ -8,19 +8,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from cutis.figures.layout import COLOUR_MAPS
 from cutis.maps import SkinMaps
 from cutis.optics import PARAMETERS
 from cutis.textures import replacing
 
 LONGEST = 900
 """Texels of the longer side of a preview."""
-COLOUR_MAPS = {
-    "melanin": "copper_r",
-    "blood": "Reds",
-    "thickness": "viridis",
-    "eumelanin": "cividis",
-    "oxygenation": "coolwarm",
-}
 
 
 def reduced(values: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -1,6 +1,7 @@
 """The faces that figures are drawn with: the bundled capture and those of the larger data."""
 
 import os
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -57,11 +58,7 @@ class Subject:
     @cached_property
     def texels(self) -> NDArray[np.bool_]:
         """(H, W) where numbers are taken: inside the mask, not hair, eyes or background."""
-        inside = self.mask > 0.5
-        if not (inside & is_skin_colour(self.calibrated)).mean() > 0.2 * inside.mean():
-            luminance = self.calibrated @ np.array([0.2126, 0.7152, 0.0722], dtype=np.float32)
-            return inside & (luminance > 0.5 * np.median(luminance[inside]))
-        return inside & is_skin_colour(self.calibrated)
+        return _skin_texels(self.calibrated, self.mask)
 
 
 def data_folder(given: Path | None) -> Path | None:
@@ -73,6 +70,25 @@ def data_folder(given: Path | None) -> Path | None:
     clone = Path(__file__).parents[3]
     usual = Path(os.environ.get("CUTIS_SHARED_DATA") or clone.parent / "shared" / "data")
     return usual if (usual / "albedo").is_dir() else None
+
+
+@dataclass(frozen=True, eq=False)
+class Cast:
+    """What figures are drawn from: the larger data, if it is at hand, and the faces."""
+
+    data: Path | None
+    subjects: tuple[Subject, ...]
+
+    @cached_property
+    def credits(self) -> tuple[str, ...]:
+        """Who made the textures."""
+        return tuple(f"{s.name}: {s.credit}" for s in self.subjects)
+
+
+def cast(given: Path | None = None) -> Cast:
+    """The faces at hand; see `data_folder`."""
+    data = data_folder(given)
+    return Cast(data, tuple(subjects(data)))
 
 
 def subjects(data: Path | None) -> list[Subject]:
@@ -88,6 +104,39 @@ def subjects(data: Path | None) -> list[Subject]:
     if not found:
         raise CutisError("figures need a clone of the repository, or --data with face albedos")
     return found
+
+
+def every_face(data: Path | None, most: int) -> Iterator[tuple[str, NDArray[np.float32]]]:
+    """Name and at most `most` skin colours (n, 3) of every face at hand, as captured."""
+    examples = Path(__file__).parents[3] / "examples"
+    paths = {path.name: path for path in sorted(examples.glob("*.jpg"))}
+    if data is not None:
+        paths |= {path.name: path for path in sorted((data / "albedo").glob("*.*g"))}
+    for name, path in sorted(paths.items()):
+        if "mask" in name:
+            continue
+        texture = read_texture(path)
+        cover = path.with_name(f"{path.stem}_mask{path.suffix}")
+        if name.startswith("makehuman"):
+            cover = path.with_name("makehuman_head_mask.png")
+        rgb = texture.linear()
+        mask = np.ones(texture.shape, np.float32)
+        if cover.is_file():
+            mask = read_mask(cover, texture.shape)
+        step = max(1, int(np.sqrt(rgb.shape[0] * rgb.shape[1] / most)) // 2)
+        where = _skin_texels(rgb[::step, ::step], mask[::step, ::step])
+        colours = rgb[::step, ::step][where]
+        yield path.stem, np.ascontiguousarray(colours[:: -(-len(colours) // most)])
+
+
+def _skin_texels(rgb: NDArray[np.float32], mask: NDArray[np.float32]) -> NDArray[np.bool_]:
+    """(H, W) texels inside the mask that are neither hair, eyes nor background."""
+    inside = mask > 0.5
+    coloured = inside & is_skin_colour(rgb)
+    if coloured.mean() > 0.2 * inside.mean():
+        return coloured
+    luminance = rgb @ np.array([0.2126, 0.7152, 0.0722], dtype=np.float32)
+    return inside & (luminance > 0.5 * np.median(luminance[inside]))
 
 
 def _subject(

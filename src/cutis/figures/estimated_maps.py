@@ -1,0 +1,59 @@
+"""Estimated maps (the paper's figure 9)."""
+
+from itertools import pairwise
+
+import numpy as np
+
+from cutis.figures.layout import COLOUR_MAPS, Picture, displayed, grid
+from cutis.figures.section import Section, table
+from cutis.figures.subjects import Cast
+from cutis.optics import PARAMETERS
+
+
+def draw(cast: Cast) -> Section:
+    """The five maps of every subject."""
+    rows, medians = [], []
+    pictures: list[list[Picture]] = []
+    for subject in cast.subjects:
+        row: list[Picture] = [displayed(subject.calibrated)]
+        cells = [subject.skin]
+        for known in PARAMETERS:
+            values = getattr(subject.maps, known.name)
+            inside = values[subject.texels]
+            low, middle, high = np.percentile(inside, [2, 50, 98])
+            root = 1 / known.root
+            shown = np.where(subject.mask > 0, values**root, np.nan)
+            row.append((shown, COLOUR_MAPS[known.name], low**root, max(high, low + 1e-9) ** root))
+            cells.append(f"{middle:.3g} ({low:.3g}–{high:.3g})")
+            if known.name == "melanin":
+                medians.append(middle)
+        pictures.append(row)
+        rows.append(cells)
+    ordered = all(a < b for a, b in pairwise(medians))
+    return Section(
+        name="estimated-maps",
+        title="Estimated maps",
+        paper="Melanin follows the skin type; moles and spots are told from redness; lips come out "
+        "with much blood and a thin epidermis.",
+        found="Median melanin "
+        + ("rises from each subject to the next" if ordered else "rises with the skin type, if not "
+           "from each subject to the next")
+        + f" ({', '.join(f'{100 * m:.1f} %' for m in medians)}). **Agreement** on the real "
+        "capture: "
+        "moles are dark in melanin and absent in blood, lips and nose have much blood, lips a thin "
+        "epidermis. On painted textures maps follow the paint. Thickness, eumelanin and "
+        "oxygenation are probable values, not measurements: see the metamers below.",
+        table=table(
+            ["skin", *(f"{p.name} [{p.unit}]" if p.unit != "1" else p.name for p in PARAMETERS)],
+            rows,
+        ),
+        pictures=(
+            (
+                grid(pictures, [s.skin for s in cast.subjects],
+                     ["capture", *(p.name for p in PARAMETERS)]),
+                "Maps of the default model; each from its 2nd to its 98th percentile (in the "
+                "table: median and these).",
+            ),
+        ),
+        credits=cast.credits,
+    )  # fmt: skip
