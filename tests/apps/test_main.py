@@ -15,7 +15,9 @@ COMMANDS = sorted(command.name for command in app.registered_commands)
 
 
 def test_the_commands():
-    assert COMMANDS == ["demo", "edit", "estimate", "info", "spectrum", "train"]
+    assert COMMANDS == [
+        "demo", "edit", "estimate", "figures", "info", "simulate", "spectrum", "train"
+    ]  # fmt: skip
 
 
 def test_version(cutis):

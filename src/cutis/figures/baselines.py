@@ -64,15 +64,7 @@ def draw_kubelka_munk(cast: Cast) -> Section:
         pictures.append(row)
     return Section(
         name="kubelka-munk",
-        title="Kubelka–Munk",
-        paper="A model in the manner of Alotaibi and Smith, with melanin and blood alone, cannot "
-        "recover the albedo of a light or of a darker face: shades shift visibly.",
-        found="**Agreement.** Under the same calibration its mean squared error is "
-        f"{ratios[0]:.0f} times that of the default on the light face and {ratios[1]:.0f} times on "
-        "the dark one. The cause found here is the number of parameters, not the two fluxes: "
-        "their reflectance of a half space is within 3 % of the exact solver's "
-        "([transport](transport.md#kubelkamunk)), but the colours of two parameters are a surface, "
-        "and skin does not lie on it.",
+        numbers={"light": ratios[0], "dark": ratios[-1]},
         table=table(["skin", "model", "MSE", "ΔE00 mean", "p95"], rows),
         pictures=(
             (
@@ -117,21 +109,7 @@ def draw_gitlina(cast: Cast) -> Section:
     subject = next((s for s in cast.subjects if s.skin == "intermediate"), cast.subjects[0])
     return Section(
         name="gitlina",
-        title="Gitlina et al. 2020",
-        paper="On four skin patches the reconstructions of Gitlina et al. are 0.014 to 0.22 in MSE "
-        "off, those of the paper 2e-6 to 9e-5; their model needs blood in the epidermis and a "
-        "melanin type map with much structure, where the paper has thickness and oxygenation.",
-        found="The images are not public, so both *tissues* are compared on what is, by the same "
-        "fit, "
-        f"without white balance: `aliaga2022` is nearer on {wins} of {total} faces"
-        + (f" and in {nearer} of {bands} ITA° bands of measured skins" if bands else "")
-        + ". **Agreement in direction, not in size**: solved exactly, their tissue comes far "
-        "nearer "
-        "than the errors quoted for their reconstructions, which are those of a whole capture "
-        "pipeline. Its map of epidermal blood takes on redness that `aliaga2022` gives to blood "
-        "and "
-        "to oxygenation, and its melanin type does carry more structure. Light faces as captured "
-        "lie partly outside the gamut of both.",
+        numbers={"faces": wins, "all_faces": total, "bands": nearer, "all_bands": bands},
         table=table(["skin", "tissue", "MSE", "ΔE00 mean", "p95"], rows + measured),
         pictures=((_gitlina_picture(subject), "The same face through both tissues: reconstruction, "
                    "absolute error × 10, and maps from their 2nd to their 98th percentile."),),

@@ -55,16 +55,7 @@ def draw_grid(cast: Cast) -> Section:
         pictures.append(row)
     return Section(
         name="editing-grid",
-        title="Edits of blood and melanin",
-        paper="Factors on blood and melanin give predictable changes for skin types I to V: more "
-        "blood is redder, more melanin darker; large ones on some skins look less natural. The "
-        "paper shows renders; here are albedos.",
-        found=f"**Agreement for {sum(signs)} of {len(signs)} edits**: they move the median colour "
-        "the "
-        "way their name says (a* with blood, L* with melanin). The others are factors of blood on "
-        "the darkest subjects: under so much melanin more blood darkens more than it reddens. The "
-        "same factor does more to light skin; melanin × 3 on dark skin runs into the end of its "
-        "range.",
+        numbers={"right": sum(signs), "count": len(signs)},
         table=table(["skin", "edit", "ΔL*", "Δa*", "Δb*"], rows),
         pictures=(
             (
@@ -109,18 +100,13 @@ def draw_further(cast: Cast) -> Section:
     count = len(cast.subjects)
     return Section(
         name="further-edits",
-        title="Further edits",
-        paper="Oxygenation makes skin paler or more saturated; a thin epidermis shows what lies "
-        "below, a thick one covers it; tanning (melanin + 40 %, all pheomelanin), flushing (blood "
-        "+ 70 %, fully oxygenated) and vitiligo look as their names say.",
-        found="**Agreement but for tanning.** a* rises with oxygenation and flushing and falls "
-        "without "
-        f"oxygen on {redder} of {3 * count}; a thin epidermis is lighter and a thick one darker on "
-        f"{lighter} of {2 * count}. Tanning with the paper's amounts moves L* by only "
-        f"{', '.join(tanned)}, from the lightest subject to the darkest, and b* up: pheomelanin "
-        "absorbs less than the eumelanin that it replaces. `melanin × 1.5` above darkens as "
-        "tanning "
-        "should. Numbers are medians over skin; patches of vitiligo cover about a third of it.",
+        numbers={
+            "redder": redder,
+            "colours": 3 * count,
+            "lighter": lighter,
+            "depths": 2 * count,
+            "tanned": ", ".join(tanned),
+        },
         table=table(["skin", "edit", "ΔL*", "Δa*", "Δb*"], rows),
         pictures=((grid(pictures, [s.skin for s in cast.subjects], ["capture", *FURTHER], 1.1),
                    "Albedos with each edit."),),

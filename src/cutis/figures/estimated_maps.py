@@ -1,7 +1,5 @@
 """Estimated maps (the paper's figure 9)."""
 
-from itertools import pairwise
-
 import numpy as np
 
 from cutis.figures.layout import COLOUR_MAPS, Picture, displayed, grid
@@ -29,20 +27,9 @@ def draw(cast: Cast) -> Section:
                 medians.append(middle)
         pictures.append(row)
         rows.append(cells)
-    ordered = all(a < b for a, b in pairwise(medians))
     return Section(
         name="estimated-maps",
-        title="Estimated maps",
-        paper="Melanin follows the skin type; moles and spots are told from redness; lips come out "
-        "with much blood and a thin epidermis.",
-        found="Median melanin "
-        + ("rises from each subject to the next" if ordered else "rises with the skin type, if not "
-           "from each subject to the next")
-        + f" ({', '.join(f'{100 * m:.1f} %' for m in medians)}). **Agreement** on the real "
-        "capture: "
-        "moles are dark in melanin and absent in blood, lips and nose have much blood, lips a thin "
-        "epidermis. On painted textures maps follow the paint. Thickness, eumelanin and "
-        "oxygenation are probable values, not measurements: see the metamers below.",
+        numbers={"medians": ", ".join(f"{100 * m:.1f} %" for m in medians)},
         table=table(
             ["skin", *(f"{p.name} [{p.unit}]" if p.unit != "1" else p.name for p in PARAMETERS)],
             rows,

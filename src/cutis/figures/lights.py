@@ -22,7 +22,7 @@ LIGHTS = ("D65", "A", "FL11", "LED-B3")
 
 def draw_illuminants(cast: Cast) -> Section:
     """Faces as if captured under D65-prime, brought to D65."""
-    pictures, rows = [], []
+    pictures, rows, moves = [], [], []
     for subject in cast.subjects[:3]:
         source = np.clip(subject.rgb, 0, None)
         converted = source @ light_conversion(PRIMES[0]).T
@@ -33,19 +33,11 @@ def draw_illuminants(cast: Cast) -> Section:
         inside = subject.texels
         for light in PRIMES:
             moved = source[inside] @ light_conversion(light).T
-            rows.append([subject.skin, light, f"{delta_e(moved, source[inside]).mean():.2f}"])
+            moves.append(float(delta_e(moved, source[inside]).mean()))
+            rows.append([subject.skin, light, f"{moves[-1]:.2f}"])
     return Section(
         name="illuminants",
-        title="From D65′ to D65",
-        paper="Captures under the LED light D65′ are upsampled to spectra and brought to D65 "
-        "before "
-        "they are estimated.",
-        found="D65′ is known only by its white, so three mixtures of LEDs with that white stand "
-        "for "
-        "it, and the textures here stand for captures under it. The conversion works as the paper "
-        "says; its size depends on the mixture, from half a ΔE00 to six. How near conversions come "
-        "to the truth on measured skins, and what the choice of mixture costs: "
-        "[colour](colour.md#lights).",
+        numbers={"least": min(moves), "most": max(moves)},
         table=table(["skin", "light", "mean ΔE00 of the conversion"], rows),
         pictures=(
             (
@@ -63,15 +55,16 @@ def draw_metamers(cast: Cast) -> Section:
     """Families of skins within one ΔE00, what they span, how they part under other lights."""
     space, panels, ranges, parted, swatches = albedo_space(), [], [], [], []
     means: dict[tuple[str, str], float] = {}
+    spans: dict[str, np.ndarray] = {}
     for tone, skin in TONES.items():
         family = metamers(space.rgb(np.array(skin)), 1.0, 1000)
+        low, high = np.percentile(family.skins, [5, 95], axis=0)
+        spans[tone] = high / low
         ranges.append(
             [tone, f"{family.share:.1e}"]
             + [
-                f"{low:.3g}–{high:.3g} {p.unit.replace('1', '')}".strip()
-                for p, (low, high) in zip(
-                    PARAMETERS, np.percentile(family.skins, [5, 95], axis=0).T, strict=True
-                )
+                f"{a:.3g}–{b:.3g} {p.unit.replace('1', '')}".strip()
+                for p, a, b in zip(PARAMETERS, low, high, strict=True)
             ]
         )  # fmt: skip
         colours = colours_under(family.skins, LIGHTS)
@@ -95,18 +88,12 @@ def draw_metamers(cast: Cast) -> Section:
     )
     return Section(
         name="metamers",
-        title="Metamers",
-        paper="Many sets of parameters give one RGB albedo; estimating from RGB is a choice of "
-        "design, and spectra would tell more of them apart.",
-        found="**Agreement, with numbers.** Among the skins within one ΔE00 of a light skin's "
-        "colour "
-        "melanin and blood vary by a factor of about two (5 to 95 %), while thickness and melanin "
-        "type take nearly any value; for a dark colour blood varies tenfold. Under A the members "
-        f"of the light family are {means['light', 'A'] / means['light', 'D65']:.1f} times as far "
-        f"from their mean as under D65, those of the dark one "
-        f"{means['dark', 'A'] / means['dark', 'D65']:.1f} times; under FL11 and the LED less. An "
-        "edit that looks right in daylight may be some ΔE00 off under a bulb, depending on which "
-        "member was taken.",
+        numbers={
+            "melanin": spans["light"][0],
+            "blood": spans["light"][1],
+            "dark_blood": spans["dark"][1],
+            **{tone: means[tone, "A"] / means[tone, "D65"] for tone in ("light", "dark")},
+        },
         table=text,
         pictures=(
             (curves(panels, "albedo"), "Sixty members of each family: one colour under D65."),

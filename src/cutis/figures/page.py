@@ -23,8 +23,8 @@ def write_page(sections: Sequence[Section], folder: Path) -> Path:
     pictures.mkdir(parents=True, exist_ok=True)
     text = [HEAD]
     for section in sections:
-        text += [f"## {section.title}", f"**The paper.** {section.paper}"]
-        text.append(f"**Here.** {section.found}")
+        title, paper, found = section.words()
+        text += [f"## {title}", f"**The paper.** {paper}", f"**Here.** {found}"]
         for number, (figure, caption) in enumerate(section.pictures, 1):
             name = f"{section.name}-{number}.jpg"
             data = io.BytesIO()

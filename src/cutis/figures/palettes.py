@@ -37,28 +37,23 @@ def palette(**held: float) -> np.ndarray:
 def draw(cast: Cast) -> Section:
     """A palette for three values of each of the other parameters."""
     pictures, rows = [], []
+    numbers: dict[str, float] = {}
     for name, values in ENDS.items():
         colours = [palette(**{name: value}) for value in values]
         pictures.append([displayed(c).repeat(6, 0).repeat(6, 1) for c in colours])
         error = delta_e(colours[0], colours[-1])
         light, dark = error[: STEPS // 4], error[-STEPS // 4 :]
+        numbers[name] = error.mean()
+        if name == "oxygenation":
+            numbers |= {"light": light.mean(), "dark": dark.mean()}
         unit = parameter(name).unit.replace("1", "")
         rows.append(
             [name, f"{values[0]:g} to {values[-1]:g} {unit}".strip(), f"{error.mean():.1f}",
              f"{light.mean():.1f}", f"{dark.mean():.1f}", f"{error.max():.1f}"]
         )  # fmt: skip
-    found = {row[0]: row for row in rows}
     return Section(
         name="palettes",
-        title="Palettes of the albedo space",
-        paper="Melanin (0.1 to 43 %) against blood (0.1 to 30 %) spans skin from very light to "
-        "very "
-        "dark; thickness, melanin type and oxygenation change these colours significantly.",
-        found="**Agreement.** Between the ends of its range thickness moves colours by "
-        f"{found['thickness'][2]} ΔE00 on average, eumelanin by {found['eumelanin'][2]}, "
-        f"oxygenation by {found['oxygenation'][2]}; the last shows in light skin "
-        f"({found['oxygenation'][3]}) and is hidden by melanin in dark "
-        f"({found['oxygenation'][4]}).",
+        numbers=numbers,
         table=table(
             ["parameter", "from, to", "ΔE00 mean", "least melanin", "most melanin", "max"], rows
         ),

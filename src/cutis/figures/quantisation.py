@@ -50,16 +50,12 @@ def draw(cast: Cast) -> Section:
     ]  # fmt: skip
     return Section(
         name="quantisation",
-        title="Quantisation of edits",
-        paper="Through a tensor an albedo is reproduced almost exactly, but its maps are noisy, "
-        "and "
-        "tripled melanin shows steps and shifts of colour even with 256 000 skins; the network "
-        "gives clean edits.",
-        found="**Agreement.** Roughness is the mean relative second difference of neighbouring "
-        f"texels. Tripled melanin through the tensors is {edited['lookup-55k']:.3f} (55k) and "
-        f"{edited['lookup']:.3f} (256k) rough, through the network {edited['aliaga2022']:.3f}, "
-        f"through the default {edited['default']:.3f}; before the edit all are alike. More nodes "
-        "help little: neighbouring colours still fall on far-apart skins.",
+        numbers={
+            "lookup55k": edited["lookup-55k"],
+            "lookup": edited["lookup"],
+            "network": edited["aliaga2022"],
+            "default": edited["default"],
+        },
         table=table(["method", "roughness, as estimated", "melanin × 3", "shades"], [first, *rows]),
         pictures=(
             (

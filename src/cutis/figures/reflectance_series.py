@@ -50,22 +50,16 @@ def draw(cast: Cast) -> Section:
         drawn = space.reflectance(np.array(series["melanin"][1]))[:, np.isin(WAVELENGTHS, BANDS)]
         share = np.mean((drawn >= low) & (drawn <= high))
         measured = (
-            f" The grey band holds 98 % of {len(measured_albedo)} measured skins of all tones, "
-            f"the surface's reflection taken off: {100 * share:.0f} % of the melanin series lies "
-            "inside."
+            f"The grey band holds 98 % of {len(measured_albedo)} measured skins of all tones, the "
+            f"surface's reflection taken off: {share:.0%} of the melanin series lies inside."
         )
     return Section(
         name="reflectance-series",
-        title="Reflectance of melanin and blood series",
-        paper="Melanin darkens the whole spectrum, the blue first, and far from evenly, which is "
-        "why it is sampled by its cube root; blood digs the two bands of haemoglobin and leaves "
-        "the red, and is sampled by its fourth root. The plots agree in kind with published ones.",
-        found=f"The values of the paper's caption through the exact space, at {HELD[0]:g} µm, a "
-        f"eumelanin share of {HELD[1]:g} and an oxygenation of {HELD[2]:g}, which the paper does "
-        "not say. **Agreement**: more is darker at "
-        f"{100 * ordered['melanin']:.0f} % of the wavelengths for melanin and "
-        f"{100 * ordered['blood']:.0f} % for blood; the double band of oxygenated blood stands at "
-        "540 and 580 nm and drowns as melanin rises." + measured,
+        numbers={
+            **dict(zip(("thickness", "eumelanin", "oxygenation"), HELD, strict=True)),
+            **ordered,
+            "measured": measured,
+        },
         table=table(["series", "value", *(f"{nm:g} nm" for nm in PRINTED), "L*", "a*", "b*"], rows),
         pictures=(
             (curves(panels, "albedo", band), "Spectra, drawn in their own colours."),

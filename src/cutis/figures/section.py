@@ -1,6 +1,8 @@
-"""One figure of the paper, redrawn: its pictures, its numbers, and both sides of the comparison."""
+"""One figure of the paper, redrawn: its pictures and its numbers, and the words about them."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from importlib import resources
 from typing import Any
 
 
@@ -8,18 +10,22 @@ from typing import Any
 class Section:
     """A section of the page of reproductions.
 
-    `paper` tells in our words what the paper shows or says, `found` what comes out here, both as
-    Markdown; `table` holds the numbers, `pictures` the drawings (matplotlib figures) with their
-    captions, `credits` who made the textures in them.
+    Its words are data/figures/`name`.md: a title, what the paper shows in our words, and what comes
+    out here, with places for `numbers`. `table` holds more of them, `pictures` the drawings
+    (matplotlib figures) with their captions, `credits` who made the textures in them.
     """
 
     name: str
-    title: str
-    paper: str
-    found: str
+    numbers: Mapping[str, Any]
     table: str
     pictures: tuple[tuple[Any, str], ...]
     credits: tuple[str, ...] = ()
+
+    def words(self) -> tuple[str, str, str]:
+        """Title, what the paper says, what was found."""
+        file = resources.files("cutis.data").joinpath("figures", f"{self.name}.md")
+        title, paper, found = file.read_text("utf-8").strip().split("\n\n")
+        return title.removeprefix("# "), paper, found.format(**self.numbers).strip()
 
 
 def table(header: list[str], rows: list[list[str]]) -> str:
