@@ -1,5 +1,6 @@
 """Fixtures that every room's tests may use."""
 
+import hashlib
 import os
 from pathlib import Path
 
@@ -9,6 +10,16 @@ import pytest
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 ROOT = Path(__file__).parents[1]
+
+# Numba's cache of a kernel notices changes of the kernel's own file, not of the functions that it
+# calls from others. Tests run on code compiled from exactly these sources.
+_SOURCES = hashlib.sha256()
+for _source in sorted((ROOT / "src" / "cutis").rglob("*.py")):
+    if b"compile" in _source.read_bytes().lower():  # says so of itself, in its first lines
+        _SOURCES.update(_source.read_bytes())
+os.environ.setdefault(
+    "NUMBA_CACHE_DIR", str(ROOT / ".pytest_cache" / f"numba-{_SOURCES.hexdigest()[:16]}")
+)
 SHARED_DATA = Path(os.environ.get("CUTIS_SHARED_DATA") or ROOT.parent / "shared" / "data")
 
 

@@ -19,8 +19,9 @@ def test_parameters_are_in_range_for_any_colour(name):
         assert np.all(skins[:, i] <= np.float32(known.high))
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", [name for name in MODELS if name != "kubelka-munk"])
 def test_loop_closes_on_skins(name):
+    """Of the baseline, whose colours are a surface that skins leave: test_kubelka_munk.py."""
     u = np.random.default_rng(0).uniform(0.15, 0.6, (2, 100, 5))
     rgb = albedo_space().rgb(from_coordinates(u))
     model = load_model(name)
