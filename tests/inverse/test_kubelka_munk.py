@@ -1,32 +1,23 @@
-"""The Kubelka–Munk skin and its inverse."""
+"""The inverse of the Kubelka–Munk skin: the nearest colour of its surface."""
 
 import numpy as np
 import pytest
+from scipy.optimize import least_squares
 
 from cutis.albedo.kubelka_munk import KubelkaMunkSkin
 from cutis.colour import delta_e
+from cutis.errors import CutisError
 from cutis.inverse import load_model
 from cutis.inverse.kubelka_munk import kubelka_munk_inverse
-from cutis.optics import ALIAGA2022, WAVELENGTHS, from_coordinates
+from cutis.optics import from_coordinates
 
 SKIN = KubelkaMunkSkin()
+LOW, HIGH = np.array([0.1, 0.001**0.25]), np.array([0.43 ** (1 / 3), 0.07**0.25])
+"""Ends of the roots of melanin and blood."""
 
 
-def test_reflectance_by_hand_at_550_nm():
-    """exp(−2 μa,e t) R∞ with the tissue's own coefficients, K = 2 μa, S = ¾ μs′."""
-    i = int(np.flatnonzero(WAVELENGTHS == 550)[0])
-    epidermis = ALIAGA2022.epidermis_absorption(0.05, 0.61, 550.0).item()
-    dermis = ALIAGA2022.dermis_absorption(0.02, 0.75, 550.0).item()
-    ratio = 2 * dermis / (0.75 * float(ALIAGA2022.reduced_scattering(550.0)))
-    expected = np.exp(-2 * epidermis * 0.02) * (1 + ratio - np.sqrt(ratio**2 + 2 * ratio))
-    assert SKIN.reflectance(0.05, 0.02)[i] == pytest.approx(expected, rel=1e-12)
-
-
-def test_more_of_either_is_darker():
-    axis = np.linspace(0.002, 0.07, 30)
-    assert np.all(np.diff(SKIN.reflectance(axis, 0.02), axis=0) < 0)
-    assert np.all(np.diff(SKIN.reflectance(0.02, axis)[:, 2:30], axis=0) < 0)
-    assert SKIN.rgb(0.02, 0.07)[1] < SKIN.rgb(0.02, 0.01)[1]
+def rgb_of(roots):
+    return SKIN.rgb(roots[..., 0] ** 3, roots[..., 1] ** 4)
 
 
 @pytest.fixture(scope="module")
@@ -34,34 +25,69 @@ def inverse():
     return kubelka_munk_inverse()
 
 
-def test_skins_come_back(inverse):
-    rng = np.random.default_rng(2)
-    melanin = rng.uniform(0.12, 0.74, 2000) ** 3
-    blood = rng.uniform(0.2, 0.51, 2000) ** 4
-    colours = SKIN.rgb(melanin, blood).astype(np.float32)
-    skins = from_coordinates(inverse.encode(colours))
-    error = delta_e(inverse.decode(skins), colours)
-    assert np.percentile(error, 90) < 0.1
-    assert error.max() < 0.5  # of nearly black skins, in whose colour the two hardly differ
-    light = melanin < 0.1
-    np.testing.assert_allclose(skins[light, 0], melanin[light], rtol=4e-2)
+def test_colours_of_the_surface_come_back(inverse):
+    roots = LOW + np.random.default_rng(2).uniform(0, 1, (5000, 2)) * (HIGH - LOW)
+    truth = rgb_of(roots)
+    found = inverse.nearest(truth)
+    np.testing.assert_allclose(SKIN.rgb(*found.T), truth, atol=1e-7)
+    np.testing.assert_allclose(found ** (1 / np.array([3, 4])), roots, atol=1e-5)
+    skins = from_coordinates(inverse.encode(truth))
     assert np.allclose(skins[:, 2:], [200.0, 0.61, 0.75], rtol=1e-5)
+    assert delta_e(inverse.decode(skins), truth).max() < 1e-3
+
+
+def test_the_corners_come_back(inverse):
+    corners = np.array([[0.001, 0.001], [0.001, 0.07], [0.43, 0.001], [0.43, 0.07]])
+    np.testing.assert_allclose(inverse.nearest(SKIN.rgb(*corners.T)), corners, rtol=1e-3)
+    beyond = inverse.nearest(np.array([[0.9, 0.9, 0.9], [0.0, 0.0, 0.0], [-0.1, 1.2, 0.0]]))
+    assert np.all((beyond >= corners.min(0)) & (beyond <= corners.max(0)))
+    np.testing.assert_allclose(beyond[:2], corners[[0, 3]], rtol=1e-12)
 
 
 def test_nearest_point_on_the_surface(inverse):
-    """Against brute force over a fine grid: no point of it is nearer than what was found."""
+    """Against brute force over a fine grid, and against SciPy's bounded least squares from there.
+
+    Colours from everywhere, most of them far from any skin.
+    """
     rng = np.random.default_rng(3)
-    colours = rng.uniform(0.02, 0.8, (300, 3)).astype(np.float32)
-    found = inverse.decode(from_coordinates(inverse.encode(colours)).astype(np.float32))
-    melanin = np.linspace(0.001 ** (1 / 3), 0.43 ** (1 / 3), 700) ** 3
-    blood = np.linspace(0.001**0.25, 0.07**0.25, 500) ** 4
-    grid = SKIN.rgb(*np.meshgrid(melanin, blood, indexing="ij")).reshape(-1, 3)
-    for colour, ours in zip(colours, found, strict=True):
-        best = np.sqrt(((grid - colour) ** 2).sum(axis=1).min())
-        assert np.linalg.norm(ours - colour) < best + 5e-4
+    colours = np.concatenate([rng.uniform(0, 0.8, (150, 3)), rng.uniform(0, 0.1, (50, 3))])
+    colours = colours.astype(np.float32)
+    distance = np.linalg.norm(SKIN.rgb(*inverse.nearest(colours).T) - colours, axis=1)
+    axes = [np.linspace(LOW[i], HIGH[i], n) for i, n in enumerate((400, 300))]
+    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+    shades = rgb_of(grid)
+    for colour, ours in zip(colours, distance, strict=True):
+        squares = ((shades - colour) ** 2).sum(axis=1)
+        best = int(squares.argmin())
+        assert ours <= np.sqrt(squares[best]) + 1e-7
+        if rng.random() < 0.15:
+            start = np.clip(grid[best], LOW + 1e-6, HIGH - 1e-6)
+            refined = least_squares(
+                lambda p, c=colour: rgb_of(p) - c, start, bounds=(LOW, HIGH), gtol=1e-12
+            )
+            assert ours <= np.sqrt(2 * refined.cost) + 1e-7
+
+
+def test_another_skin_has_another_inverse():
+    skin = KubelkaMunkSkin(thickness=80.0, epidermis="scattering", blood=(0.001, 0.2))
+    truth = skin.rgb(np.array([0.01, 0.1]), np.array([0.05, 0.15]))
+    found = kubelka_munk_inverse(skin).nearest(truth)
+    np.testing.assert_allclose(found, [[0.01, 0.05], [0.1, 0.15]], rtol=1e-3)
 
 
 def test_as_a_model():
     model = load_model("kubelka-munk")
-    colours = SKIN.rgb(np.array([0.02, 0.1]), np.array([0.02, 0.03])).astype(np.float32)
-    np.testing.assert_allclose(model.decode(model.encode(colours)), colours, atol=1e-4)
+    colours = SKIN.rgb(np.array([[0.02, 0.1]]), np.array([[0.02, 0.03]])).astype(np.float32)
+    skins = model.encode(colours)
+    assert skins.shape == (1, 2, 5)
+    np.testing.assert_allclose(model.decode(skins), colours, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("colours", "what"),
+    [([[0.5, np.nan, 0.5]], "NaN or infinite"), ([0.5, 0.4, 0.3], r"must be \(n, 3\)")],
+)
+def test_bad_input_is_one_line(inverse, colours, what):
+    with pytest.raises(CutisError, match=what) as caught:
+        inverse.nearest(colours)
+    assert "\n" not in str(caught.value)

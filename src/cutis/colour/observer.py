@@ -42,9 +42,9 @@ def illuminant(name: str) -> NDArray[np.float64]:
     if Path(name).suffix.lower() in (".csv", ".txt", ".spd") or Path(name).is_file():
         return read_light(name)
     near = difflib.get_close_matches(plain, [known.lower() for known in illuminant_names()], 3, 0.5)
-    hint = f"is it {' or '.join(n.upper() for n in near)}? " if near else ""
+    hint = f"is it {' or '.join(n.upper() for n in near)}? else " if near else ""
     raise CutisError(
-        f"unknown illuminant {name!r}; {hint}Take a CIE name (A, D65, FL11, LED-B3), D65-prime, or "
+        f"unknown illuminant {name!r}; {hint}take a CIE name (A, D65, FL11, LED-B3), D65-prime, or "
         "a CSV file with the columns wavelength_nm,power"
     )
 

@@ -15,8 +15,8 @@ SURFACE = 0.028
 def measured_skins(data: Path) -> NDArray[np.float64]:
     """(n, 31) albedo at BANDS of the skins in `data`/spectra/measured, without the surface's part.
 
-    Both archives hold measured = ρ + (1 − ρ) · albedo, the specular part included [lu2025issa,
-    cooksey2017]; records marked as implausible are left out.
+    Both archives hold measured = ρ + (1 − ρ) · albedo, the specular part included [issa2025,
+    cooksey2017nist]; records marked as implausible are left out.
     """
     folder = data / "spectra" / "measured"
     spectra = []

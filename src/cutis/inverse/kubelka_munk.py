@@ -1,22 +1,24 @@
 """Inverse of the Kubelka–Munk skin: the nearest colour on its two-dimensional surface.
 
-The surface is tabulated finely over the roots in which skins are even, searched for the nearest
-node exactly, and left from there by one Gauss–Newton step.
+The surface is tabulated, even in the roots in which skins are even, as bicubic B-splines. The node
+nearest to a colour is found exactly, and Newton's method goes downhill from there.
 """
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from cutis.albedo.kubelka_munk import KubelkaMunkSkin
+from cutis.errors import CutisError
 from cutis.inverse.lookup import curve_order, search_tree
 from cutis.optics import PARAMETERS, to_coordinates
 from cutis.optics.parameters import BLOOD, MELANIN
 
-NODES = (1024, 512)
-"""Nodes along melanin and along blood."""
+CELLS = (256, 128)
+"""Cells of the surface along melanin and along blood."""
+ROOTS = np.array([MELANIN.root, BLOOD.root])
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,74 +28,82 @@ class KubelkaMunkInverse:
     skin: KubelkaMunkSkin
 
     @cached_property
-    def _axes(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Roots of melanin and of blood at the nodes."""
-        ranges = zip((self.skin.melanin, self.skin.blood), (MELANIN, BLOOD), strict=True)
-        melanin, blood = (
-            np.linspace(low ** (1 / p.root), high ** (1 / p.root), count)
-            for ((low, high), p), count in zip(ranges, NODES, strict=True)
-        )
-        return melanin, blood
+    def _ends(self) -> NDArray[np.float64]:
+        """(2, 2) lowest and highest melanin, blood."""
+        return np.array([self.skin.melanin, self.skin.blood]).T
 
     @cached_property
     def _colours(self) -> NDArray[np.float64]:
-        melanin, blood = self._axes
-        return self.skin.rgb(melanin[:, None] ** MELANIN.root, blood[None, :] ** BLOOD.root)
+        """Colours at the corners of all cells."""
+        low, high = self._ends ** (1 / ROOTS)
+        melanin, blood = (np.linspace(low[i], high[i], CELLS[i] + 1) ** ROOTS[i] for i in range(2))
+        return self.skin.rgb(melanin[:, None], blood[None, :])
 
     @cached_property
-    def _away(self) -> NDArray[np.float64]:
-        """(nodes, 2, 3) how far to go in cells of either axis per difference in colour."""
-        slope = np.stack(list(np.gradient(self._colours, axis=(0, 1))), axis=-1).reshape(-1, 3, 2)
-        return np.linalg.pinv(slope, rcond=1e-4)
-
-    @cached_property
-    def _surface(self) -> list:
-        """A bicubic spline per channel over the roots."""
-        from scipy.interpolate import RectBivariateSpline
-
-        return [RectBivariateSpline(*self._axes, self._colours[..., c]) for c in range(3)]
+    def _table(self) -> NDArray[np.float64]:
+        """B-spline coefficients of the surface, one more than corners at each end."""
+        return _splines(self._colours)
 
     @cached_property
     def _tree(self) -> tuple[NDArray[np.generic], ...]:
         return search_tree(self._colours.reshape(-1, 3).astype(np.float32))
 
-    def roots(self, colours: NDArray[np.float32]) -> NDArray[np.float64]:
-        """(n, 3) linear sRGB → (n, 2) roots of melanin and blood on the nearest point."""
+    def nearest(self, colours: ArrayLike) -> NDArray[np.float64]:
+        """(n, 3) linear sRGB → (n, 2) melanin and blood of the nearest point on the surface.
+
+        Raises CutisError for colours that are not finite.
+        """
+        from cutis.inverse.kubelka_munk_kernel import nearest_point_kernel
         from cutis.inverse.lookup_kernel import nearest_kernel
 
         queries = np.ascontiguousarray(colours, dtype=np.float32)
-        nearest = np.empty(len(queries), dtype=np.int64)
+        if queries.ndim != 2 or queries.shape[1] != 3:
+            raise CutisError(f"colours must be (n, 3) linear sRGB, not {queries.shape}")
+        if not np.isfinite(queries).all():
+            raise CutisError("some colours are NaN or infinite; mask them out")
+        node = np.empty(len(queries), dtype=np.int64)
         points, index, low, high, starts = self._tree
-        order = curve_order(queries)
-        nearest_kernel(queries, order, points, index, low, high, starts, nearest)
-        missing = queries - self._colours.reshape(-1, 3)[nearest]
-        step = np.clip((self._away[nearest] @ missing[..., None])[..., 0], -0.5, 0.5)
-        cells = np.stack(np.divmod(nearest, NODES[1]), axis=-1) + step
-        return np.stack(
-            [np.interp(cells[:, i], np.arange(NODES[i]), self._axes[i]) for i in range(2)], -1
-        )
+        nearest_kernel(queries, curve_order(queries), points, index, low, high, starts, node)
+        cells = np.stack(np.divmod(node, CELLS[1] + 1), axis=-1).astype(np.float64)
+        nearest_point_kernel(queries, self._table, cells)
+        first, last = self._ends ** (1 / ROOTS)
+        return np.clip((first + cells / CELLS * (last - first)) ** ROOTS, *self._ends)
 
     def encode(self, colours: NDArray[np.float32]) -> NDArray[np.float32]:
         """(n, 3) linear sRGB → (n, 5) network coordinates, what the skin holds in all of them."""
-        roots = self.roots(colours)
-        skins = np.empty((len(roots), len(PARAMETERS)))
-        skins[:, 0] = roots[:, 0] ** MELANIN.root
-        skins[:, 1] = roots[:, 1] ** BLOOD.root
+        found = self.nearest(colours)
+        skins = np.empty((len(found), len(PARAMETERS)))
+        skins[:, :2] = found
         skins[:, 2:] = self.skin.thickness, self.skin.eumelanin, self.skin.oxygenation
         return to_coordinates(skins).astype(np.float32)
 
     def decode(self, skins: NDArray[np.float32]) -> NDArray[np.float32]:
         """(n, 5) parameters → (n, 3) linear sRGB; only melanin and blood are heeded."""
-        melanin, blood = (
-            np.clip(skins[:, i], *limits) ** (1 / p.root)
-            for i, (limits, p) in enumerate(
-                ((self.skin.melanin, MELANIN), (self.skin.blood, BLOOD))
-            )
-        )
-        return np.stack([s.ev(melanin, blood) for s in self._surface], -1).astype(np.float32)
+        from cutis.inverse.kubelka_munk_kernel import surface_kernel
+
+        first, last = self._ends ** (1 / ROOTS)
+        roots = np.clip(skins[:, :2].astype(np.float64), *self._ends) ** (1 / ROOTS)
+        out = np.empty((len(skins), 3), dtype=np.float32)
+        surface_kernel((roots - first) / (last - first) * CELLS, self._table, out)
+        return out
 
 
 @lru_cache(maxsize=4)
 def kubelka_munk_inverse(skin: KubelkaMunkSkin | None = None) -> KubelkaMunkInverse:
     """The inverse of `skin` (the default one), its table made once per process."""
     return KubelkaMunkInverse(skin or KubelkaMunkSkin())
+
+
+def _splines(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Values at the nodes of the first two axes → cubic B-spline coefficients, not-a-knot ends."""
+    coefficients = values
+    for axis in range(2):
+        n = coefficients.shape[axis]
+        system = np.zeros((n + 2, n + 2))
+        rows = np.arange(n)
+        for shift, weight in ((0, 1 / 6), (1, 2 / 3), (2, 1 / 6)):
+            system[rows + 1, rows + shift] = weight
+        system[0, :5] = system[-1, -5:] = (1, -4, 6, -4, 1)  # one cubic over the two end cells
+        inverse = np.linalg.inv(system)[:, 1:-1]
+        coefficients = np.moveaxis(np.tensordot(inverse, coefficients, axes=(1, axis)), 0, axis)
+    return np.ascontiguousarray(coefficients)
