@@ -52,7 +52,7 @@ def draw_kubelka_munk(cast: Cast) -> Section:
             model = skin.calibration.apply(skin.model_albedo)
             error = np.where(subject.mask[..., None] > 0, model - source, 0)
             if name == "kubelka-munk":
-                row += [displayed(model), magnified(error, 1.0)]
+                row += [displayed(model), magnified(error)]
                 for known in PARAMETERS[:2]:
                     values = getattr(skin, known.name) ** (1 / known.root)
                     low, high = (float(v) for v in np.percentile(values[inside], [2, 98]))
@@ -69,10 +69,9 @@ def draw_kubelka_munk(cast: Cast) -> Section:
         pictures=(
             (
                 grid(pictures, ["light", "dark"],
-                     ["capture", "Kubelka–Munk", "error × 1", "melanin", "blood"], 1.5),
-                "Capture after white balance, reconstruction, absolute error in linear RGB, and "
-                "the "
-                "two maps.",
+                     ["capture", "Kubelka–Munk", "error × 4", "melanin", "blood"], 1.5),
+                "Capture after white balance, reconstruction, four times its error in linear "
+                "RGB, the two maps.",
             ),
         ),
         credits=cast.credits,
