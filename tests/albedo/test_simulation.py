@@ -9,7 +9,7 @@ from scipy.stats import chi2, norm
 import cutis.albedo.simulation as simulation
 from cutis.albedo import SkinSimulation, TensorSimulation, Walks, albedo_space, grid_skins, uniform
 from cutis.errors import CutisError
-from cutis.optics import ALIAGA2022, PARAMETERS, to_coordinates
+from cutis.optics import ALIAGA2022, GITLINA2020, PARAMETERS, to_coordinates
 
 LEVEL = 1e-3
 SKINS = uniform(5, seed=3)
@@ -74,6 +74,7 @@ def test_nodes_of_a_grid():
     ("make", "what"),
     [
         (lambda: Walks(photons=0), "photons = 0"),
+        (lambda: Walks(GITLINA2020), "five free parameters"),
         (lambda: SkinSimulation(np.zeros((2, 4)), Walks()), r"\(n, 5\)"),
         (lambda: SkinSimulation(np.zeros((0, 5)), Walks()), r"\(n, 5\)"),
         (lambda: SkinSimulation(np.zeros((1, 5)), Walks()), "melanin"),

@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 from scipy.optimize import least_squares
+from scipy.spatial import KDTree
 
-from cutis.albedo import albedo_space
-from cutis.colour import delta_e
-from cutis.inverse.fit import fit, logistic, logit
-from cutis.optics import from_coordinates
+from cutis.albedo import albedo_space, uniform
+from cutis.colour import delta_e, is_skin_colour
+from cutis.errors import CutisError
+from cutis.inverse.fit import explain, fit, logistic, logit
+from cutis.optics import GITLINA2020, from_coordinates
 
 CENTRE = np.array([0.4, 0.5, 0.4, 0.5, 0.6])
 PRECISION = np.diag([0.5, 0.8, 2.0, 1.5, 1.0])
@@ -91,3 +93,31 @@ def test_each_colour_may_have_its_own_centre():
         fit(space, colours, centres, PRECISION, TOLERANCE),
         fit(space, colours, CENTRE, PRECISION, TOLERANCE),
     )
+
+
+def test_explain_finds_the_nearest_skin_of_a_tissue():
+    """Against 300 000 skins of the tissue, spread evenly, for colours in and out of its gamut."""
+    colours = albedo_space().rgb(uniform(3000, 3))
+    face = colours[is_skin_colour(colours)][:1200].reshape(30, 40, 3)
+    maps, model = explain(face, GITLINA2020)
+    space = albedo_space(GITLINA2020)
+    assert list(maps) == ["melanin", "blood", "eumelanin", "epidermal_blood"]
+    for known in GITLINA2020.parameters:
+        assert maps[known.name].shape == (30, 40)
+        assert known.low <= maps[known.name].min() <= maps[known.name].max() <= known.high
+    np.testing.assert_allclose(space.rgb(np.stack(list(maps.values()), -1)), model, atol=1e-6)
+    u = np.random.default_rng(11).random((300_000, 4))
+    every = [p.from_coordinate(u[:, i]) for i, p in enumerate(GITLINA2020.parameters)]
+    nearest = KDTree(space.rgb(np.stack(every, -1))).query(face)[0]
+    ours = np.linalg.norm(model - face, axis=-1)
+    assert np.mean(ours > 0.03) > 0.05  # far out of gamut
+    assert np.mean(ours < nearest + 2e-3) > 0.95
+    assert np.mean(ours**2) < 1.05 * np.mean(np.minimum(ours, nearest) ** 2)
+
+
+@pytest.mark.parametrize(
+    ("rgb", "what"), [(np.zeros((4, 4)), "linear sRGB"), ([0.5, np.nan, 0.2], "not finite")]
+)
+def test_what_cannot_be_explained(rgb, what):
+    with pytest.raises(CutisError, match=what):
+        explain(rgb)

@@ -7,7 +7,7 @@ from cutis.albedo import albedo_space
 from cutis.colour import delta_e
 from cutis.errors import CutisError
 from cutis.inverse.metamers import colours_under, metamers, spread
-from cutis.optics import from_coordinates, to_coordinates
+from cutis.optics import GITLINA2020, from_coordinates, to_coordinates
 
 LIGHT = np.array([0.02, 0.02, 80.0, 0.7, 0.7])
 
@@ -43,6 +43,11 @@ def test_other_lights_tell_them_apart(family):
     colours = colours_under(family.skins, ["D65", "A"])
     assert np.allclose(colours["D65"], albedo_space().rgb(family.skins), atol=1e-5)
     assert np.mean(spread(colours["A"])) > 1.5 * np.mean(spread(colours["D65"]))
+
+
+def test_other_tissues_are_refused():
+    with pytest.raises(CutisError, match="five free parameters"):
+        metamers([0.5, 0.4, 0.3], space=albedo_space(GITLINA2020))
 
 
 @pytest.mark.parametrize(

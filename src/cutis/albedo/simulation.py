@@ -33,6 +33,10 @@ class Walks:
 
     def __post_init__(self) -> None:
         check_photons(self.photons, self.seed)
+        if self.tissue.parameters != PARAMETERS:
+            raise CutisError(
+                f"only tissues with the five free parameters are simulated, not {self.tissue.name}"
+            )
 
 
 @dataclass(frozen=True, eq=False)

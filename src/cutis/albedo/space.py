@@ -56,7 +56,7 @@ class AlbedoSpace:
 
     @property
     def model(self) -> tuple[NDArray[np.float32], ...]:
-        """What the kernels of `spline.py` take after the skins: spectra to RGB weights."""
+        """What the kernels of `spline.py` take after the slots: spectra to RGB weights."""
         return (*self._model, self._to_rgb)
 
     def reflectance(self, parameters: ArrayLike) -> NDArray[np.float32]:
@@ -66,7 +66,7 @@ class AlbedoSpace:
         flat, shape = self._rows(parameters)
         out = np.empty((len(flat), len(WAVELENGTHS)), dtype=np.float32)
         for band in _bands(len(flat)):
-            reflectance_kernel(_float32(flat[band]), *self._model, out[band])
+            reflectance_kernel(_float32(flat[band]), self.slots, *self._model, out[band])
         return out.reshape(*shape, -1)
 
     def rgb(self, parameters: ArrayLike) -> NDArray[np.float32]:
@@ -76,7 +76,7 @@ class AlbedoSpace:
         flat, shape = self._rows(parameters)
         out = np.empty((len(flat), 3), dtype=np.float32)
         for band in _bands(len(flat)):
-            rgb_kernel(_float32(flat[band]), *self._model, self._to_rgb, out[band])
+            rgb_kernel(_float32(flat[band]), self.slots, *self._model, self._to_rgb, out[band])
         return out.reshape(*shape, 3)
 
     def rgb_gradient(
@@ -90,7 +90,7 @@ class AlbedoSpace:
         slope = np.empty((len(flat), 3, flat.shape[1]), dtype=np.float32)
         for band in _bands(len(flat)):
             rgb_gradient_kernel(
-                _float32(flat[band]), *self._model, self._to_rgb, out[band], slope[band]
+                _float32(flat[band]), self.slots, *self._model, self._to_rgb, out[band], slope[band]
             )
         slope = slope[..., list(self.places)]
         return out.reshape(*shape, 3), slope.reshape(*shape, 3, len(self.places))
@@ -99,6 +99,11 @@ class AlbedoSpace:
     def every_parameter(self) -> tuple[Parameter, ...]:
         """What kernels take: the five, fixed or free, and epidermal blood where there is any."""
         return (*PARAMETERS, EPIDERMAL_BLOOD) if self.tissue.epidermal_blood else PARAMETERS
+
+    @cached_property
+    def slots(self) -> tuple[int, ...]:
+        """One entry per parameter that kernels take; see `spline.py`."""
+        return tuple(range(len(self.every_parameter)))
 
     @cached_property
     def places(self) -> tuple[int, ...]:

@@ -1,7 +1,8 @@
 """Compiled evaluation of a spectral table: parameters → reflectance or RGB, with gradients.
 
 Kernels run over texels on all cores, in float32. Parameters (n, 5) are in their units and order;
-a sixth, where there is one, is the blood of the epidermis.
+a sixth, where there is one, is the blood of the epidermis. `slots` is a tuple with an entry for
+each parameter: its length is their number, and unlike that of an array the compiler knows it.
 `spectra` (6, bands) holds μa of eumelanin, pheomelanin, bare epidermis, deoxygenated blood,
 oxygenated blood and bare dermis; `low`, `scale` (bands, 3) turn μa_e^¼, μa_d^¼ and log t into
 cells. Tests hold the result against the exact solver.
@@ -65,20 +66,22 @@ def _sum(c: Any, i: Any, j: Any, k: Any, we: Any, wd: Any, wt: Any) -> Any:
 
 
 @njit(inline="always", fastmath=True)
-def _mixtures(x: Any, spectra: Any, b: Any) -> Any:
+def _mixtures(x: Any, slots: Any, spectra: Any, b: Any) -> Any:
     """μa of melanin, of blood, of epidermis and of dermis at band b, cm⁻¹."""
     pigment = x[3] * spectra[0, b] + (ONE - x[3]) * spectra[1, b]
     blood = x[4] * spectra[4, b] + (ONE - x[4]) * spectra[3, b]
     epidermis = x[0] * pigment + (ONE - x[0]) * spectra[2, b]
-    if len(x) > 5:
+    if len(slots) > 5:
         epidermis += x[5] * (blood - spectra[2, b])
     return pigment, blood, epidermis, x[1] * blood + (ONE - x[1]) * spectra[5, b]
 
 
 @njit(inline="always", fastmath=True)
-def _albedo(x: Any, b: Any, k: Any, wt: Any, spectra: Any, table: Any, low: Any, scale: Any) -> Any:
-    """Albedo at band b of the skin x (5,), thickness already located as (k, wt)."""
-    _, _, epidermis, dermis = _mixtures(x, spectra, b)
+def _albedo(
+    x: Any, b: Any, k: Any, wt: Any, slots: Any, spectra: Any, table: Any, low: Any, scale: Any
+) -> Any:
+    """Albedo at band b of the skin x, thickness already located as (k, wt)."""
+    _, _, epidermis, dermis = _mixtures(x, slots, spectra, b)
     i, fe = locate_cell(np.sqrt(np.sqrt(epidermis)), low[b, 0], scale[b, 0], table.shape[1])
     j, fd = locate_cell(np.sqrt(np.sqrt(dermis)), low[b, 1], scale[b, 1], table.shape[2])
     return _sum(table[b], i, j, k, cubic_weights(fe), cubic_weights(fd), wt)
@@ -86,7 +89,7 @@ def _albedo(x: Any, b: Any, k: Any, wt: Any, spectra: Any, table: Any, low: Any,
 
 @njit(parallel=True, fastmath=True, cache=True)
 def reflectance_kernel(
-    skins: Any, spectra: Any, table: Any, low: Any, scale: Any, out: Any
+    skins: Any, slots: Any, spectra: Any, table: Any, low: Any, scale: Any, out: Any
 ) -> None:
     """Fills out (n, bands) with reflectance in [0, 1]."""
     n = skins.shape[0]
@@ -96,12 +99,12 @@ def reflectance_kernel(
             k, ft = locate_cell(np.log(x[2]), low[0, 2], scale[0, 2], table.shape[3])
             wt = cubic_weights(ft)
             for b in range(table.shape[0]):
-                out[row, b] = _albedo(x, b, k, wt, spectra, table, low, scale)
+                out[row, b] = _albedo(x, b, k, wt, slots, spectra, table, low, scale)
 
 
 @njit(parallel=True, fastmath=True, cache=True)
 def rgb_kernel(
-    skins: Any, spectra: Any, table: Any, low: Any, scale: Any, to_rgb: Any, out: Any
+    skins: Any, slots: Any, spectra: Any, table: Any, low: Any, scale: Any, to_rgb: Any, out: Any
 ) -> None:
     """Fills out (n, 3) with Σ_band albedo · to_rgb (bands, 3)."""
     n = skins.shape[0]
@@ -112,7 +115,7 @@ def rgb_kernel(
             wt = cubic_weights(ft)
             red, green, blue = np.float32(0), np.float32(0), np.float32(0)
             for b in range(table.shape[0]):
-                albedo = _albedo(x, b, k, wt, spectra, table, low, scale)
+                albedo = _albedo(x, b, k, wt, slots, spectra, table, low, scale)
                 red += albedo * to_rgb[b, 0]
                 green += albedo * to_rgb[b, 1]
                 blue += albedo * to_rgb[b, 2]
@@ -123,8 +126,9 @@ def rgb_kernel(
 
 @njit(fastmath=True, cache=True)
 def rgb_and_slope(
-    x: Any, spectra: Any, table: Any, low: Any, scale: Any, to_rgb: Any, rgb: Any, slope: Any
-) -> None:
+    x: Any, slots: Any, spectra: Any, table: Any, low: Any, scale: Any, to_rgb: Any, rgb: Any,
+    slope: Any
+) -> None:  # fmt: skip
     """Fills rgb (3,) and slope (3, n) = ∂RGB/∂parameter, per unit of each, of one skin x (n,)."""
     quarter = np.float32(0.25)
     k, ft = locate_cell(np.log(x[2]), low[0, 2], scale[0, 2], table.shape[3])
@@ -132,7 +136,7 @@ def rgb_and_slope(
     rgb[:] = 0
     slope[:] = 0
     for b in range(table.shape[0]):
-        pigment, blood, epidermis, dermis = _mixtures(x, spectra, b)
+        pigment, blood, epidermis, dermis = _mixtures(x, slots, spectra, b)
         re, rd = np.sqrt(np.sqrt(epidermis)), np.sqrt(np.sqrt(dermis))
         i, fe = locate_cell(re, low[b, 0], scale[b, 0], table.shape[1])
         j, fd = locate_cell(rd, low[b, 1], scale[b, 1], table.shape[2])
@@ -149,23 +153,32 @@ def rgb_and_slope(
             by_e * x[0] * (spectra[0, b] - spectra[1, b]),
             by_d * x[1] * (spectra[4, b] - spectra[3, b]),
         )
-        in_epidermis = by_e * (blood - spectra[2, b])
         for channel in range(3):
             weight = to_rgb[b, channel]
             rgb[channel] += albedo * weight
             for p in range(5):
                 slope[channel, p] += partials[p] * weight
-            if len(x) > 5:
+            if len(slots) > 5:
                 slope[channel, 4] += by_e * x[5] * (spectra[4, b] - spectra[3, b]) * weight
-                slope[channel, 5] += in_epidermis * weight
+                slope[channel, 5] += by_e * (blood - spectra[2, b]) * weight
 
 
 @njit(parallel=True, fastmath=True, cache=True)
 def rgb_gradient_kernel(
-    skins: Any, spectra: Any, table: Any, low: Any, scale: Any, to_rgb: Any, out: Any, slope: Any
+    skins: Any,
+    slots: Any,
+    spectra: Any,
+    table: Any,
+    low: Any,
+    scale: Any,
+    to_rgb: Any,
+    out: Any,
+    slope: Any,
 ) -> None:
     """`rgb_and_slope` of every skin: fills out (n, 3) and slope (n, 3, 5 or 6)."""
     n = skins.shape[0]
     for block in prange((n + BLOCK - 1) // BLOCK):
         for row in range(block * BLOCK, min(n, (block + 1) * BLOCK)):
-            rgb_and_slope(skins[row], spectra, table, low, scale, to_rgb, out[row], slope[row])
+            rgb_and_slope(
+                skins[row], slots, spectra, table, low, scale, to_rgb, out[row], slope[row]
+            )

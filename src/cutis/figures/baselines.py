@@ -5,33 +5,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cutis.albedo import albedo_space
 from cutis.colour import delta_e, ita, reflectance_to_rgb
 from cutis.figures.layout import COLOUR_MAPS, Picture, displayed, grid, magnified
 from cutis.figures.measured import BANDS, measured_skins
 from cutis.figures.section import Section, table
 from cutis.figures.subjects import Cast, Subject, every_face
-from cutis.inverse import fit
-from cutis.optics import ALIAGA2022, GITLINA2020, PARAMETERS, Tissue
+from cutis.inverse import explain
+from cutis.optics import ALIAGA2022, GITLINA2020, PARAMETERS
 
 MOST = 40_000
 """Texels of a face that numbers are taken on."""
-PRIOR, TOLERANCE = 0.4, 0.003
-"""Centre of the coordinates and colour tolerance of both fits: the data decide."""
 TISSUES = {"gitlina2020": GITLINA2020, "aliaga2022": ALIAGA2022}
 ITA_BANDS = ((55, 999, "very light"), (41, 55, "light"), (28, 41, "intermediate"),
              (10, 28, "tan"), (-30, 10, "brown"), (-999, -30, "dark"))  # fmt: skip
-
-
-def explained(
-    tissue: Tissue, colours: NDArray[np.floating]
-) -> tuple[NDArray[np.floating], NDArray[np.floating]]:
-    """(n, 3) linear sRGB → the best skins (n, p) of a tissue, and their colours (n, 3)."""
-    space = albedo_space(tissue)
-    count = len(tissue.parameters)
-    u = fit(space, colours, np.full(count, PRIOR), np.eye(count), TOLERANCE)
-    skins = np.stack([p.from_coordinate(u[:, i]) for i, p in enumerate(tissue.parameters)], axis=-1)
-    return skins, space.rgb(skins)
 
 
 def _errors(model: NDArray[np.floating], truth: NDArray[np.floating]) -> list[str]:
@@ -84,7 +70,7 @@ def draw_gitlina(cast: Cast) -> Section:
     for name, colours in every_face(cast.data, MOST):
         squares = []
         for label, tissue in TISSUES.items():
-            model = explained(tissue, colours)[1]
+            model = explain(colours, tissue)[1]
             rows.append([name, label, *_errors(model, colours)])
             squares.append(float(np.mean((model - colours) ** 2)))
         wins, total = wins + (squares[1] < squares[0]), total + 1
@@ -99,7 +85,7 @@ def draw_gitlina(cast: Cast) -> Section:
                 continue
             squares = []
             for tissue_name, tissue in TISSUES.items():
-                model = explained(tissue, some)[1]
+                model = explain(some, tissue)[1]
                 squares.append(float(np.mean((model - some) ** 2)))
                 measured.append(
                     [f"measured, {label} ({len(some)})", tissue_name, *_errors(model, some)]
@@ -120,16 +106,16 @@ def _gitlina_picture(subject: Subject) -> Any:
     source, rows = subject.calibrated, []
     inside = subject.mask > 0
     for tissue in TISSUES.values():
-        skins, model = explained(tissue, source[inside])
+        maps, model = explain(source[inside], tissue)
         shown = np.ones_like(source)
         shown[inside] = model
         error = np.zeros_like(source)
         error[inside] = model - source[inside]
         row: list[Picture] = [displayed(shown), magnified(error, 10.0)]
         colours = COLOUR_MAPS | {"epidermal_blood": "Reds"}
-        for i, known in enumerate(tissue.parameters):
+        for known in tissue.parameters:
             values = np.full(source.shape[:2], np.nan)
-            values[inside] = skins[:, i] ** (1 / known.root)
+            values[inside] = maps[known.name] ** (1 / known.root)
             low, high = np.percentile(values[subject.texels], [2, 98])
             row.append((values, colours[known.name], float(low), float(max(high, low + 1e-9))))
         rows.append(row)

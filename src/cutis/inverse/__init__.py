@@ -1,7 +1,7 @@
 """Albedo → parameters: fit, networks, baked inverse, calibration of captures."""
 
 from cutis.inverse.calibration import Calibration, calibrate
-from cutis.inverse.fit import fit
+from cutis.inverse.fit import explain, fit
 from cutis.inverse.metamers import Family, colours_under, metamers, spread
 from cutis.inverse.models import MODELS, Model, load_model
 
@@ -12,6 +12,7 @@ __all__ = [
     "Model",
     "calibrate",
     "colours_under",
+    "explain",
     "fit",
     "load_model",
     "metamers",

@@ -18,17 +18,17 @@ CONVERGED = np.float32(1e-4)
 
 @njit(fastmath=True, cache=True)
 def _evaluate(
-    z: Any, weight: Any, colour: Any, root_low: Any, root_span: Any, power: Any, model: Any,
-    x: Any, rgb: Any, slope: Any, residual: Any
+    z: Any, weight: Any, colour: Any, root_low: Any, root_span: Any, power: Any, slots: Any,
+    model: Any, x: Any, rgb: Any, slope: Any, residual: Any
 ) -> None:  # fmt: skip
     """Weighted residual (3,) and its slope (3, n) by logits z (n,)."""
-    for p in range(len(z)):
+    spectra, table, low, scale, to_rgb = model
+    for p in range(len(slots)):
         u = np.float32(1) / (np.float32(1) + np.exp(-z[p]))
         root = root_low[p] + u * root_span[p]
         x[p] = root ** power[p]
-    spectra, table, low, scale, to_rgb = model
-    rgb_and_slope(x, spectra, table, low, scale, to_rgb, rgb, slope)
-    for p in range(len(z)):
+    rgb_and_slope(x, slots, spectra, table, low, scale, to_rgb, rgb, slope)
+    for p in range(len(slots)):
         u = np.float32(1) / (np.float32(1) + np.exp(-z[p]))
         root = root_low[p] + u * root_span[p]
         outer = power[p] * root ** (power[p] - np.float32(1))  # d root^power / d root
@@ -40,20 +40,20 @@ def _evaluate(
 
 
 @njit(fastmath=True, cache=True)
-def _cost(z: Any, centre: Any, precision: Any, residual: Any) -> Any:
+def _cost(z: Any, slots: Any, centre: Any, precision: Any, residual: Any) -> Any:
     total = np.float32(0)
     for c in range(3):
         total += residual[c] * residual[c]
-    for p in range(len(z)):
-        for q in range(len(z)):
+    for p in range(len(slots)):
+        for q in range(len(slots)):
             total += (z[p] - centre[p]) * precision[p, q] * (z[q] - centre[q])
     return total
 
 
 @njit(fastmath=True, cache=True)
-def _solve(a: Any, g: Any, step: Any) -> None:
+def _solve(a: Any, g: Any, slots: Any, step: Any) -> None:
     """step (n,) = −a⁻¹ g by Cholesky, in place; a (n, n) symmetric positive definite."""
-    count = len(step)
+    count = len(slots)
     for j in range(count):
         for k in range(j):
             a[j, j] -= a[j, k] * a[j, k]
@@ -77,7 +77,7 @@ def _solve(a: Any, g: Any, step: Any) -> None:
 @njit(parallel=True, fastmath=True, cache=True)
 def fit_kernel(
     colours: Any, centres: Any, weights: Any, precision: Any, iterations: Any,
-    root_low: Any, root_span: Any, power: Any, model: Any, out: Any
+    root_low: Any, root_span: Any, power: Any, slots: Any, model: Any, out: Any
 ) -> None:  # fmt: skip
     """Fills out (n, p) with the best logits, by Levenberg–Marquardt from `centres` (n, p).
 
@@ -87,16 +87,16 @@ def fit_kernel(
     for block in prange((n + BLOCK - 1) // BLOCK):
         _fit_block(
             block, colours, centres, weights, precision, iterations,
-            root_low, root_span, power, model, out,
+            root_low, root_span, power, slots, model, out,
         )  # fmt: skip
 
 
 @njit(fastmath=True, cache=True)
 def _fit_block(
     block: Any, colours: Any, centres: Any, weights: Any, precision: Any, iterations: Any,
-    root_low: Any, root_span: Any, power: Any, model: Any, out: Any
+    root_low: Any, root_span: Any, power: Any, slots: Any, model: Any, out: Any
 ) -> None:  # fmt: skip
-    count = out.shape[1]
+    count = len(slots)
     x, rgb, residual = np.empty(count, np.float32), np.empty(3, np.float32), np.empty(3, np.float32)
     slope, trial_slope = np.empty((3, count), np.float32), np.empty((3, count), np.float32)
     trial, trial_residual = np.empty(count, np.float32), np.empty(3, np.float32)
@@ -105,8 +105,10 @@ def _fit_block(
         z, centre, colour, weight = out[row], centres[row], colours[row], weights[row]
         z[:] = centre
         damping = 1e-3
-        _evaluate(z, weight, colour, root_low, root_span, power, model, x, rgb, slope, residual)
-        cost = _cost(z, centre, precision, residual)
+        _evaluate(
+            z, weight, colour, root_low, root_span, power, slots, model, x, rgb, slope, residual,
+        )  # fmt: skip
+        cost = _cost(z, slots, centre, precision, residual)
         for _ in range(iterations):
             for p in range(count):
                 g[p] = 0.0
@@ -118,15 +120,15 @@ def _fit_block(
                 for c in range(3):
                     g[p] += slope[c, p] * residual[c]
                 a[p, p] *= 1.0 + damping
-            _solve(a, g, step)
+            _solve(a, g, slots, step)
             for p in range(count):
                 move = min(max(step[p], -2.0), 2.0)
                 trial[p] = min(max(z[p] + np.float32(move), -EDGE), EDGE)
             _evaluate(
-                trial, weight, colour, root_low, root_span, power, model,
+                trial, weight, colour, root_low, root_span, power, slots, model,
                 x, rgb, trial_slope, trial_residual,
             )  # fmt: skip
-            trial_cost = _cost(trial, centre, precision, trial_residual)
+            trial_cost = _cost(trial, slots, centre, precision, trial_residual)
             gain = cost - trial_cost
             if gain >= 0:
                 z[:] = trial

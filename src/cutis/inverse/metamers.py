@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from cutis.albedo import AlbedoSpace, albedo_space
 from cutis.colour import delta_e, reflectance_to_rgb
 from cutis.errors import CutisError
-from cutis.optics import WAVELENGTHS, from_coordinates
+from cutis.optics import PARAMETERS, WAVELENGTHS, from_coordinates
 
 SCOUTS = 1 << 20
 """Skins of the first, coarse search."""
@@ -59,6 +59,10 @@ def metamers(
     if not (tolerance > 0 and count > 0):
         raise CutisError("tolerance and count of metamers must be above zero")
     forward = space or albedo_space()
+    if forward.tissue.parameters != PARAMETERS:
+        raise CutisError(
+            f"metamers are of tissues with the five free parameters, not {forward.tissue.name}"
+        )
     rng = np.random.default_rng(seed)
     scouts = rng.random((SCOUTS, 5))
     near = scouts[_distance(forward, scouts, target) < WIDER * tolerance]

@@ -149,6 +149,9 @@ class Tissue:
 ALIAGA2022 = Tissue(name="aliaga2022")
 """The model of the paper: flatland transport, index-matched boundary [aliaga2022]."""
 
+# 14.74 λ^−0.22 and 2.2e11 λ^−4 mm⁻¹ [donner2006] at 500 nm, in cm⁻¹
+_MIE, _RAYLEIGH = 147.4 * 500.0**-0.22, 2.2e12 * 500.0**-4.0
+
 GITLINA2020 = Tissue(
     name="gitlina2020",
     baseline_scale=0.0,
@@ -157,7 +160,8 @@ GITLINA2020 = Tissue(
     bilirubin=0.0,
     beta_carotene_epidermis=0.0,
     beta_carotene_dermis=0.0,
-    scattering_500=72.8,
+    scattering_500=_MIE + _RAYLEIGH,
+    rayleigh_fraction=_RAYLEIGH / (_MIE + _RAYLEIGH),
     dermis_scattering=0.5,
     dimension=3,
     boundary="fresnel",
