@@ -10,13 +10,24 @@ import numpy as np
 from pages import rewrite
 
 from cutis.albedo import albedo_space, uniform
-from cutis.colour import delta_e, is_skin_colour, light_conversion, reflectance_to_rgb
+from cutis.colour import (
+    delta_e,
+    illuminant,
+    is_skin_colour,
+    light_conversion,
+    reflectance_to_rgb,
+    spectrum_to_xyz,
+)
+from cutis.colour.observer import colour_matching
+from cutis.colour.spectra import XYZ_TO_SRGB
 from cutis.figures.measured import BANDS, measured_skins
 from cutis.figures.subjects import data_folder
 from cutis.optics import WAVELENGTHS
 
 LIGHTS = ("A", "D50", "D75", "FL1", "FL2", "FL7", "FL11", "FL12", "HP1", "LED-B3", "LED-V1",
           "LED-RGB1", "D65-prime", "D65-prime-RGB", "D65-prime-RGBW")  # fmt: skip
+BALANCED = ("A", "D50", "FL2", "FL11", "LED-B3", "D65-prime")
+"""Lights of the table of balances."""
 
 
 def fitted(light: str, spectra: np.ndarray) -> np.ndarray:
@@ -25,6 +36,32 @@ def fitted(light: str, spectra: np.ndarray) -> np.ndarray:
     there = reflectance_to_rgb(spectra, WAVELENGTHS)
     weight = 1 / there.mean(axis=1, keepdims=True)
     return np.linalg.lstsq(here * weight, there * weight, rcond=None)[0]
+
+
+def balances(skins: np.ndarray, truth: np.ndarray) -> str:
+    """What the conversion makes of captures that were balanced otherwise, or not at all."""
+    from colour.adaptation import matrix_chromatic_adaptation_VonKries
+
+    rows = [
+        "| light | channel gains, converted | left | Bradford, converted | left | none, converted "
+        "| left |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    whites = {name: illuminant(name) @ colour_matching() for name in ("D65", *BALANCED)}
+    for light in BALANCED:
+        white, target = (whites[name] / whites[name][1] for name in (light, "D65"))
+        xyz = skins @ spectrum_to_xyz(BANDS, light)
+        unbalanced = xyz @ XYZ_TO_SRGB.T
+        adaptation = matrix_chromatic_adaptation_VonKries(white, target, "Bradford")
+        bradford = xyz @ adaptation.T @ XYZ_TO_SRGB.T
+        errors = [
+            delta_e(seen @ way, truth)
+            for seen in (reflectance_to_rgb(skins, BANDS, light), bradford, unbalanced)
+            for way in (light_conversion(light).T, np.eye(3))
+        ]
+        cells = [f"{e.mean():.2f} / {np.percentile(e, 95):.2f}" for e in errors]
+        rows.append(f"| {light} | " + " | ".join(cells) + " |")
+    return "\n".join(rows)
 
 
 def main() -> None:
@@ -69,7 +106,8 @@ def main() -> None:
             + " | ".join(f"{e.mean():.2f} / {np.percentile(e, 95):.2f}" for e in errors)
             + " |"
         )
-    rewrite("colour.md", lights="\n".join(rows), prime="\n".join(choice))
+    rewrite("colour.md", lights="\n".join(rows), prime="\n".join(choice),
+            balances=balances(skins, truth))  # fmt: skip
 
 
 if __name__ == "__main__":

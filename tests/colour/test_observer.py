@@ -126,6 +126,14 @@ def test_bad_spectral_files_are_one_line(tmp_path, lam, power, what):
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize("row", ["{:g};0,5", "{:g},1,2", "{:g}"])
+def test_rows_of_other_than_two_numbers_are_refused(row, tmp_path):
+    """Decimal commas too: 0,5 would otherwise be read as 0."""
+    (tmp_path / "lamp.csv").write_text("\n".join(row.format(w) for w in GOOD))
+    with pytest.raises(CutisError, match="two numbers each"):
+        illuminant(str(tmp_path / "lamp.csv"))
+
+
 def test_files_that_are_none(tmp_path):
     with pytest.raises(CutisError, match="no such file"):
         illuminant(str(tmp_path / "gone.csv"))

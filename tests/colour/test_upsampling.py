@@ -13,6 +13,7 @@ from cutis.colour import (
     upsample,
 )
 from cutis.colour.observer import illuminant_names, wavelengths
+from cutis.errors import CutisError
 from cutis.optics import WAVELENGTHS
 
 
@@ -38,7 +39,17 @@ def test_round_trip_and_white(light):
     rgb = np.random.default_rng(2).uniform(0.05, 0.9, (50, 3))
     again = reflectance_to_rgb(upsample(rgb, light), wavelengths(), light)
     np.testing.assert_allclose(again, rgb, atol=1e-9)
-    np.testing.assert_allclose(light_conversion(light).sum(axis=1), 1, atol=2e-5)
+    np.testing.assert_allclose(light_conversion(light).sum(axis=1), 1, atol=2e-9)
+
+
+@pytest.mark.parametrize("peak", [589.0, 450.0])
+def test_lights_of_one_colour_are_refused(peak, tmp_path):
+    """Under a sodium line a white has no blue, and no gain can give it any."""
+    lamp = tmp_path / "line.csv"
+    lamp.write_text("".join(f"{w},{np.exp(-(((w - peak) / 4) ** 2))}\n" for w in wavelengths()))
+    with pytest.raises(CutisError, match=r"line.csv has too little (blue|green)") as caught:
+        light_conversion(str(lamp))
+    assert "\n" not in str(caught.value)
 
 
 def test_conversion_is_upsampling_and_summing():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cutis.albedo import albedo_space
-from cutis.colour import delta_e
+from cutis.colour import delta_e, light_conversion
 from cutis.errors import CutisError
 from cutis.inverse import load_model
 from cutis.inverse.calibration import Calibration, calibrate
@@ -53,6 +53,23 @@ def test_undo_is_the_inverse_of_apply(palette):
     assert applied.dtype == np.float32
     np.testing.assert_allclose(applied, palette * np.array(calibration.gains), rtol=1e-6)
     np.testing.assert_allclose(calibration.undo(applied), palette, rtol=3e-7)
+
+
+@pytest.mark.parametrize("light", ["A", "FL4", "LED-RGB1"])
+def test_light_before_gains_and_back(light, palette):
+    """White under the light becomes the gains; undo is the inverse."""
+    calibration = calibrate(palette, (0.9, 1.0, 1.1), light=light)
+    assert (calibration.light, calibration.gains) == (light, (0.9, 1.0, 1.1))
+    np.testing.assert_allclose(calibration.apply(np.ones((1, 3))), [[0.9, 1.0, 1.1]], rtol=1e-6)
+    expected = palette @ light_conversion(light).T * np.array(calibration.gains)
+    np.testing.assert_allclose(calibration.apply(palette), expected, rtol=3e-6)
+    np.testing.assert_allclose(calibration.undo(calibration.apply(palette)), palette, rtol=3e-6)
+
+
+def test_gains_are_searched_under_d65(palette):
+    under_a = palette @ np.linalg.inv(light_conversion("A")).T
+    found = calibrate(under_a, exposure="auto", light="A")
+    np.testing.assert_allclose(found.gains, calibrate(palette, exposure="auto").gains, rtol=1e-3)
 
 
 def test_a_capture_without_a_cast_keeps_its_gains_near_one(palette):

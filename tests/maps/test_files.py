@@ -14,6 +14,8 @@ from cutis.maps import estimate, find_source, load_maps, presets, save_maps, sou
 from cutis.optics import NAMES, PARAMETERS
 from cutis.textures import read_channels, write_channels
 
+CONVERTED = '{"gains": [1, 1, 1], "origin": "none", "light": "A", "conversion": %s}'
+
 
 @pytest.fixture
 def made(write_face, face_mask, tmp_path):
@@ -159,6 +161,10 @@ def spoiled(path, out, header=None, **changes):
         ({}, {"cutis:calibration": "gains"}, "header is damaged"),
         ({}, {"cutis:calibration": '{"gains": [1, 2]}'}, "header is damaged"),
         ({}, {"cutis:calibration": '{"gains": [0, 1, 1], "origin": ""}'}, "header is damaged"),
+        ({}, {"cutis:calibration": CONVERTED % "[[1, 0], [0, 1]]"}, "header is damaged"),
+        ({}, {"cutis:calibration": CONVERTED % "[[1,1,1], [1,1,1], [1,1,1]]"}, "header is damaged"),
+        ({}, {"cutis:calibration": CONVERTED % "[[NaN,0,0], [0,1,0], [0,0,1]]"}, "is damaged"),
+        ({}, {"cutis:calibration": CONVERTED % '"A"'}, "header is damaged"),
         ({}, {"cutis:edits": "[3]"}, "header is damaged"),
     ],
 )
@@ -173,6 +179,13 @@ def test_damaged_maps_are_refused_in_one_line(made, tmp_path, changes, header, m
         load_maps(bad)
     assert "bad.exr" in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_maps_from_before_lights_were_known_are_of_d65(made, tmp_path):
+    _, path, skin = made
+    header = {"cutis:calibration": '{"gains": [1.1, 1.0, 0.93], "origin": "given"}'}
+    again = load_maps(spoiled(path, tmp_path / "old.exr", header)).calibration
+    assert (again.light, again.conversion, again.gains) == ("D65", None, skin.calibration.gains)
 
 
 def test_a_file_without_a_mask_is_skin_all_over(made, tmp_path):

@@ -66,10 +66,10 @@ def run(
     """The work of the command; `step(name)` is called as each of six steps begins."""
     import cutis.maps as maps
     from cutis.apps.previews import write_previews
-    from cutis.colour import illuminant as light_of
+    from cutis.colour import light_conversion
     from cutis.textures import read_mask, read_texture, replacing, write_channels
 
-    light_of(illuminant)  # fails now rather than after reading
+    light_conversion(illuminant)  # fails now rather than after reading
     white_value, exposure_value = options.white_gains(white), options.exposure_gain(exposure)
     step("reading")
     texture = read_texture(face, options.encoding_name(encoding))

@@ -87,18 +87,22 @@ def read_light(path: str | Path) -> NDArray[np.float64]:
     except (OSError, UnicodeDecodeError):
         raise CutisError(f"{path.name}: not a text file of wavelength and power") from None
     rows: list[list[float]] = []
-    lines = [line.strip() for line in lines if line.strip() and not line.startswith("#")]
+    lines = [line.strip() for line in lines]
+    lines = [line for line in lines if line and not line.startswith("#")]
     for number, line in enumerate(lines):
         cells = [cell for cell in re.split(r"[,;\s]+", line) if cell]
         try:
-            rows.append([float(cell) for cell in cells[:2]])
+            rows.append([float(cell) for cell in cells])
         except ValueError:
             if number:
                 raise CutisError(
                     f"{path.name}: {line[:40]!r} is not wavelength and power"
                 ) from None
     if len(rows) < 2 or any(len(row) != 2 for row in rows):
-        raise CutisError(f"{path.name}: needs rows of wavelength in nm and relative power")
+        raise CutisError(
+            f"{path.name}: needs rows of wavelength in nm and relative power, two numbers each "
+            "with points for decimals"
+        )
     lam, power = np.array(rows).T
     if not (np.isfinite(lam).all() and np.all(np.diff(lam) > 0)):
         raise CutisError(f"{path.name}: its wavelengths must be in nm and increase")

@@ -42,10 +42,23 @@ def _xyz_matrix(lam: tuple[float, ...], light: bytes) -> NDArray[np.float64]:
     return hats @ power / power[:, 1].sum()
 
 
+LEAST_WHITE = 1e-5
+"""Of Y = 1; a light with less red, green or blue than this cannot be balanced on."""
+
+
 def spectrum_to_rgb(wavelength: ArrayLike, light: str = "D65") -> NDArray[np.float64]:
-    """(n, 3) matrix that turns reflectance at `wavelength` (n,) nm into linear sRGB."""
+    """(n, 3) matrix that turns reflectance at `wavelength` (n,) nm into linear sRGB.
+
+    Raises CutisError for lights, such as a sodium line, whose white is no mix of sRGB's primaries.
+    """
     matrix = spectrum_to_xyz(wavelength, light) @ XYZ_TO_SRGB.T
-    return matrix / matrix.sum(axis=0)
+    white = matrix.sum(axis=0)
+    if white.min() < LEAST_WHITE:
+        raise CutisError(
+            f"the light {light} has too little {('red', 'green', 'blue')[int(white.argmin())]} to "
+            "be white-balanced on; take one whose white is inside sRGB"
+        )
+    return matrix / white
 
 
 def reflectance_to_rgb(

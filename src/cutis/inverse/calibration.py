@@ -14,6 +14,7 @@ Conversion and gains are undone on output, so colours come back as they came.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Literal
 
 import numpy as np
@@ -48,7 +49,8 @@ class Calibration:
     """What was applied to linear sRGB as captured, and a word on the origin of the gains.
 
     `gains` (red, green, blue) after `conversion`, the 3 × 3 matrix from the RGB of `light` to that
-    of D65; None where the capture was made under D65.
+    of D65; None where the capture was made under D65. `light` is a name; that of a file without
+    its folder.
     """
 
     gains: tuple[float, float, float] = (1.0, 1.0, 1.0)
@@ -86,6 +88,7 @@ def calibrate(
     if not np.array_equal(matrix, np.eye(3)):
         conversion = tuple(tuple(float(v) for v in row) for row in matrix)
         rgb = np.asarray(rgb) @ matrix.T
+        light = Path(light).name if Path(light).is_file() else light
     else:
         light = "D65"
     fixed = np.ones(3)
