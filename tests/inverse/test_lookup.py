@@ -10,10 +10,10 @@ from cutis.inverse.lookup import (
     SHAPES,
     LookupTensor,
     build_tensor,
-    curve_order,
     lookup_tensor,
     tensor_of_spectra,
 )
+from cutis.inverse.nearest import curve_order
 from cutis.optics import PARAMETERS, to_coordinates
 
 SMALL = (16, 12, 3, 2, 2)

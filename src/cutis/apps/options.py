@@ -33,6 +33,21 @@ Illuminant = Annotated[
         "spectrum.",
     ),
 ]
+Melanin = Annotated[
+    float | None, typer.Option("--melanin", help="Melanosome volume fraction, 0.001-1.")
+]
+Blood = Annotated[float | None, typer.Option("--blood", help="Blood volume fraction, 0.001-1.")]
+Thickness = Annotated[
+    float | None, typer.Option("--thickness", help="Epidermal thickness, 10-250 µm.")
+]
+Eumelanin = Annotated[float | None, typer.Option("--eumelanin", help="Eumelanin share of melanin.")]
+Oxygenation = Annotated[
+    float | None, typer.Option("--oxygenation", help="Oxygenated share of haemoglobin.")
+]
+Skins = Annotated[
+    Path | None,
+    typer.Argument(help="CSV of skins, a column per parameter; missing ones are typical."),
+]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 Encoding = Annotated[
     str,

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
     from cutis.apps.journal import Simulation
 
-Value = float | None
 MOST_CHECKED = 100_000
 """Skins that are compared with the exact solver."""
 
@@ -26,15 +25,12 @@ def simulate(
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Result: .csv, or .npz for many skins.")
     ],
-    skins: Annotated[
-        Path | None,
-        typer.Argument(help="CSV of skins, a column per parameter; missing ones are typical."),
-    ] = None,
-    melanin: Annotated[Value, typer.Option(help="Melanosome volume fraction, 0.001-1.")] = None,
-    blood: Annotated[Value, typer.Option(help="Blood volume fraction, 0.001-1.")] = None,
-    thickness: Annotated[Value, typer.Option(help="Epidermal thickness, 10-250 µm.")] = None,
-    eumelanin: Annotated[Value, typer.Option(help="Eumelanin share of melanin.")] = None,
-    oxygenation: Annotated[Value, typer.Option(help="Oxygenated share of haemoglobin.")] = None,
+    skins: options.Skins = None,
+    melanin: options.Melanin = None,
+    blood: options.Blood = None,
+    thickness: options.Thickness = None,
+    eumelanin: options.Eumelanin = None,
+    oxygenation: options.Oxygenation = None,
     grid: Annotated[
         str | None, typer.Option(help="Five sizes of a grid over the parameters: 8,8,3,1,1.")
     ] = None,

@@ -8,27 +8,24 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from cutis.apps import options
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-Value = float | None
-
 
 def spectrum(
-    skins: Annotated[
-        Path | None,
-        typer.Argument(help="CSV of skins, a column per parameter; missing ones are typical."),
-    ] = None,
-    melanin: Annotated[Value, typer.Option(help="Melanosome volume fraction, 0.001-1.")] = None,
-    blood: Annotated[Value, typer.Option(help="Blood volume fraction, 0.001-1.")] = None,
-    thickness: Annotated[Value, typer.Option(help="Epidermal thickness, 10-250 µm.")] = None,
-    eumelanin: Annotated[Value, typer.Option(help="Eumelanin share of melanin.")] = None,
-    oxygenation: Annotated[Value, typer.Option(help="Oxygenated share of haemoglobin.")] = None,
+    skins: options.Skins = None,
+    melanin: options.Melanin = None,
+    blood: options.Blood = None,
+    thickness: options.Thickness = None,
+    eumelanin: options.Eumelanin = None,
+    oxygenation: options.Oxygenation = None,
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="CSV to write; a plot goes beside it.")
     ] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
+    quiet: options.Quiet = False,
 ) -> None:
     """Reflectance of skin, 380-780 nm, from its parameters.
 

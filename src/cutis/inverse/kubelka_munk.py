@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutis.albedo.kubelka_munk import KubelkaMunkSkin
-from cutis.errors import CutisError
-from cutis.inverse.lookup import curve_order, search_tree
+from cutis.inverse.nearest import NearestColour, finite_colours
 from cutis.optics import PARAMETERS, to_coordinates
 from cutis.optics.parameters import BLOOD, MELANIN
 
@@ -45,8 +44,8 @@ class KubelkaMunkInverse:
         return _splines(self._colours)
 
     @cached_property
-    def _tree(self) -> tuple[NDArray[np.generic], ...]:
-        return search_tree(self._colours.reshape(-1, 3).astype(np.float32))
+    def _tree(self) -> NearestColour:
+        return NearestColour(self._colours.reshape(-1, 3).astype(np.float32))
 
     def nearest(self, colours: ArrayLike) -> NDArray[np.float64]:
         """(n, 3) linear sRGB → (n, 2) melanin and blood of the nearest point on the surface.
@@ -54,16 +53,9 @@ class KubelkaMunkInverse:
         Raises CutisError for colours that are not finite.
         """
         from cutis.inverse.kubelka_munk_kernel import nearest_point_kernel
-        from cutis.inverse.lookup_kernel import nearest_kernel
 
-        queries = np.ascontiguousarray(colours, dtype=np.float32)
-        if queries.ndim != 2 or queries.shape[1] != 3:
-            raise CutisError(f"colours must be (n, 3) linear sRGB, not {queries.shape}")
-        if not np.isfinite(queries).all():
-            raise CutisError("some colours are NaN or infinite; mask them out")
-        node = np.empty(len(queries), dtype=np.int64)
-        points, index, low, high, starts = self._tree
-        nearest_kernel(queries, curve_order(queries), points, index, low, high, starts, node)
+        queries = finite_colours(colours)
+        node = self._tree(queries)
         cells = np.stack(np.divmod(node, CELLS[1] + 1), axis=-1).astype(np.float64)
         nearest_point_kernel(queries, self._table, cells)
         first, last = self._ends ** (1 / ROOTS)

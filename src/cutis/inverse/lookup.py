@@ -16,14 +16,11 @@ from numpy.typing import ArrayLike, NDArray
 from cutis.albedo import AlbedoSpace, albedo_space, grid_skins
 from cutis.colour import reflectance_to_rgb
 from cutis.errors import CutisError
+from cutis.inverse.nearest import NearestColour, finite_colours
 from cutis.optics import WAVELENGTHS, to_coordinates
 
 SHAPES = {"lookup": (64, 32, 5, 5, 5), "lookup-55k": (64, 32, 3, 3, 3)}
 """The two tensors of the paper, melanin, blood, thickness, eumelanin and oxygenation."""
-LEAF = 8
-"""Most points in a leaf of the search tree."""
-CURVE_CELLS = 128
-"""Cells per axis of the curve along which queries are sorted."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,25 +41,15 @@ class LookupTensor:
         return grid_skins(self.shape).astype(np.float32)
 
     @cached_property
-    def _tree(self) -> tuple[NDArray[np.generic], ...]:
-        return search_tree(self.colours)
+    def _tree(self) -> NearestColour:
+        return NearestColour(self.colours)
 
     def nearest(self, colours: ArrayLike) -> NDArray[np.int64]:
-        """(n, 3) linear sRGB → (n,) index of the skin with the nearest colour.
+        """(n, 3) linear sRGB → (n,) index of the skin with the nearest colour, the first of equals.
 
         Raises CutisError for colours that are not finite.
         """
-        from cutis.inverse.lookup_kernel import nearest_kernel
-
-        queries = np.ascontiguousarray(colours, dtype=np.float32)
-        if queries.ndim != 2 or queries.shape[1] != 3:
-            raise CutisError(f"colours must be (n, 3) linear sRGB, not {queries.shape}")
-        if not np.isfinite(queries).all():
-            raise CutisError("some colours are NaN or infinite; mask them out")
-        out = np.empty(len(queries), dtype=np.int64)
-        points, index, low, high, starts = self._tree
-        nearest_kernel(queries, curve_order(queries), points, index, low, high, starts, out)
-        return out
+        return self._tree(finite_colours(colours))
 
     def encode(self, colours: NDArray[np.float32]) -> NDArray[np.float32]:
         """(n, 3) linear sRGB → (n, 5) network coordinates of the nearest skin."""
@@ -94,42 +81,3 @@ def tensor_of_spectra(shape: Sequence[int], reflectance: ArrayLike) -> LookupTen
 def lookup_tensor(name: str = "lookup") -> LookupTensor:
     """One of the paper's two tensors by name, built once per process."""
     return build_tensor(SHAPES[name])
-
-
-def search_tree(points: NDArray[np.float32]) -> tuple[NDArray[np.generic], ...]:
-    """(points in order of leaves, their index, box ends low and high, starts of leaves)."""
-    levels = max(int(np.ceil(np.log2(max(len(points) / LEAF, 1)))), 0)
-    order = np.arange(len(points))
-    segments = [(0, len(points))]
-    low, high = np.empty((2, 2 ** (levels + 1) - 1, 3))
-    node = 0
-    for level in range(levels + 1):
-        parts = []
-        for start, stop in segments:
-            inside = points[order[start:stop]]
-            low[node], high[node] = inside.min(axis=0), inside.max(axis=0)
-            if level < levels:
-                axis = int(np.argmax(high[node] - low[node]))
-                middle = (stop - start) // 2
-                split = np.argpartition(inside[:, axis], middle)
-                order[start:stop] = order[start:stop][split]
-                parts += [(start, start + middle), (start + middle, stop)]
-            node += 1
-        if level < levels:
-            segments = parts
-    starts = np.array([start for start, _ in segments] + [len(points)])
-    return points[order].astype(np.float64), order, low, high, starts
-
-
-def curve_order(colours: NDArray[np.float32]) -> NDArray[np.int64]:
-    """(n,) order of (n, 3) colours along a Morton curve through their bounding box."""
-    if not len(colours):
-        return np.empty(0, dtype=np.int64)
-    low = colours.min(axis=0)
-    size = np.maximum(colours.max(axis=0) - low, 1e-30)
-    cell = np.minimum((colours - low) / size * CURVE_CELLS, CURVE_CELLS - 1).astype(np.uint32)
-    key = np.zeros(len(colours), dtype=np.uint32)
-    for bit in range(CURVE_CELLS.bit_length() - 1):
-        for axis in range(3):
-            key |= ((cell[:, axis] >> np.uint32(bit)) & np.uint32(1)) << np.uint32(3 * bit + axis)
-    return np.argsort(key, kind="stable")

@@ -1,4 +1,4 @@
-"""Compiled search for the nearest of many colours (see `lookup.py`).
+"""Compiled search for the nearest of many colours (see `nearest.py`).
 
 A balanced binary tree over points sorted into its leaves: node i has the children 2i + 1 and
 2i + 2, and a box around its points. Boxes are searched nearest first and left out when they are
