@@ -116,14 +116,31 @@ def test_as_a_model(name):
 
 
 @pytest.mark.parametrize(
-    ("shape", "what"),
-    [((), "five|5 sizes"), ((4, 4), "5 sizes"), ((4, 4, 0, 2, 2), "above zero"),
-     ((4, 4, 2.5, 2, 2), "above zero")],
+    "shape",
+    [(), (4, 4), (4, 4, 2, 2, 2, 2), (4, 4, 0, 2, 2), (4, 4, -1, 2, 2), (4, 4, 2.5, 2, 2),
+     (4, 4, np.nan, 2, 2), (np.inf, 4, 2, 2, 2), ("a", 4, 2, 2, 2), 5, None],
 )  # fmt: skip
-def test_shapes_that_are_none(shape, what):
-    with pytest.raises(CutisError, match=what) as caught:
-        build_tensor(shape)
-    assert "\n" not in str(caught.value)
+def test_shapes_that_are_none(shape):
+    for build in (build_tensor, lambda s: tensor_of_spectra(s, np.ones((2, 41)))):
+        with pytest.raises(CutisError, match="five whole numbers above zero") as caught:
+            build(shape)
+        assert "\n" not in str(caught.value)
+
+
+def test_skins_out_of_range_are_those_of_its_end(small):
+    beyond = np.array([[5.0, -0.1, 500.0, 2.0, -1.0], [-1.0, 7.0, -3.0, -2.0, 1.5]])
+    ends = np.array([[p.low, p.high] for p in PARAMETERS]).T
+    at_end = [[ends[k][i] for i, k in enumerate(row)] for row in ([1, 0, 1, 1, 0], [0, 1, 0, 0, 1])]
+    assert np.array_equal(small.decode(beyond), small.decode(np.array(at_end)))
+    with pytest.raises(CutisError, match="NaN"):
+        small.decode(beyond * np.nan)
+
+
+def test_colours_as_far_as_float32_goes(small):
+    queries = np.array([[3e38, -3e38, 0], [-3e38, 3e38, 3e38], [1e-45, 0, 0]], dtype=np.float32)
+    assert np.array_equal(small.nearest(queries), brute_force(small.colours, queries))
+    with pytest.raises(CutisError, match="infinite"):
+        small.nearest([[1e39, 0, 0]])
 
 
 def test_bad_colours(small):

@@ -17,7 +17,7 @@ from cutis.albedo import AlbedoSpace, albedo_space, grid_skins
 from cutis.colour import reflectance_to_rgb
 from cutis.errors import CutisError
 from cutis.inverse.nearest import NearestColour, finite_colours
-from cutis.optics import WAVELENGTHS, to_coordinates
+from cutis.optics import PARAMETERS, WAVELENGTHS, to_coordinates
 
 SHAPES = {"lookup": (64, 32, 5, 5, 5), "lookup-55k": (64, 32, 3, 3, 3)}
 """The two tensors of the paper, melanin, blood, thickness, eumelanin and oxygenation."""
@@ -31,14 +31,14 @@ class LookupTensor:
     colours: NDArray[np.float32]
 
     def __post_init__(self) -> None:
-        count = len(grid_skins(self.shape))
+        count = len(_nodes(self.shape))
         if self.colours.shape != (count, 3) or not np.isfinite(self.colours).all():
             raise CutisError(f"a tensor of {count} skins needs as many finite colours")
 
     @cached_property
     def skins(self) -> NDArray[np.float32]:
         """(n, 5) parameters of the nodes."""
-        return grid_skins(self.shape).astype(np.float32)
+        return _nodes(self.shape).astype(np.float32)
 
     @cached_property
     def _tree(self) -> NearestColour:
@@ -56,15 +56,24 @@ class LookupTensor:
         return to_coordinates(self.skins[self.nearest(colours)]).astype(np.float32)
 
     def decode(self, skins: NDArray[np.float32]) -> NDArray[np.float32]:
-        """(n, 5) parameters → (n, 3) linear sRGB of the nearest node."""
-        cells = np.maximum(np.array(self.shape) - 1, 0)
-        node = np.rint(np.clip(to_coordinates(skins), 0, 1) * cells).astype(np.int64)
+        """(n, 5) parameters → (n, 3) linear sRGB of the nearest node.
+
+        Parameters outside their range are taken as its end; CutisError for NaN.
+        """
+        if np.isnan(skins).any():
+            raise CutisError("some skins are NaN; mask them out")
+        low, high = np.array([(p.low, p.high) for p in PARAMETERS], dtype=np.float32).T
+        cells = np.array(self.shape) - 1
+        node = np.rint(to_coordinates(np.clip(skins, low, high)) * cells).astype(np.int64)
         return self.colours[np.ravel_multi_index(tuple(node.T), self.shape)]
 
 
 def build_tensor(shape: Sequence[int], space: AlbedoSpace | None = None) -> LookupTensor:
-    """The tensor of that shape, its colours from the exact albedo space (a second)."""
-    colours = (space or albedo_space()).rgb(grid_skins(shape))
+    """The tensor of that shape, its colours from the exact albedo space (a second).
+
+    Raises CutisError unless the shape is five whole numbers above zero.
+    """
+    colours = (space or albedo_space()).rgb(_nodes(shape))
     return LookupTensor(tuple(int(n) for n in shape), colours)
 
 
@@ -73,6 +82,7 @@ def tensor_of_spectra(shape: Sequence[int], reflectance: ArrayLike) -> LookupTen
     spectra = np.asarray(reflectance)
     if spectra.ndim != 2 or spectra.shape[1] != len(WAVELENGTHS):
         raise CutisError(f"reflectance must be (n, {len(WAVELENGTHS)}), not {spectra.shape}")
+    _nodes(shape)  # a shape that is none fails here
     colours = reflectance_to_rgb(spectra, WAVELENGTHS).astype(np.float32)
     return LookupTensor(tuple(int(n) for n in shape), colours)
 
@@ -81,3 +91,14 @@ def tensor_of_spectra(shape: Sequence[int], reflectance: ArrayLike) -> LookupTen
 def lookup_tensor(name: str = "lookup") -> LookupTensor:
     """One of the paper's two tensors by name, built once per process."""
     return build_tensor(SHAPES[name])
+
+
+def _nodes(shape: Sequence[int]) -> NDArray[np.float64]:
+    """(n, 5) parameters of the nodes; CutisError for what is no shape."""
+    try:
+        return grid_skins(shape)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise CutisError(
+            "the shape of a tensor is five whole numbers above zero, such as (64, 32, 5, 5, 5), "
+            f"not {shape!r}"
+        ) from error

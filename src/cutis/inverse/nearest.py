@@ -18,7 +18,8 @@ CURVE_CELLS = 128
 
 def finite_colours(colours: ArrayLike) -> NDArray[np.float32]:
     """(n, 3) linear sRGB as float32; CutisError for other shapes and colours not finite."""
-    queries = np.ascontiguousarray(colours, dtype=np.float32)
+    with np.errstate(over="ignore"):  # what float32 cannot hold is refused below
+        queries = np.ascontiguousarray(colours, dtype=np.float32)
     if queries.ndim != 2 or queries.shape[1] != 3:
         raise CutisError(f"colours must be (n, 3) linear sRGB, not {queries.shape}")
     if not np.isfinite(queries).all():
@@ -72,7 +73,7 @@ def curve_order(colours: NDArray[np.float32]) -> NDArray[np.int64]:
     """(n,) order of (n, 3) colours along a Morton curve through their bounding box."""
     if not len(colours):
         return np.empty(0, dtype=np.int64)
-    low = colours.min(axis=0)
+    low = colours.min(axis=0).astype(np.float64)  # the box may be wider than float32 can say
     size = np.maximum(colours.max(axis=0) - low, 1e-30)
     cell = np.minimum((colours - low) / size * CURVE_CELLS, CURVE_CELLS - 1).astype(np.uint32)
     key = np.zeros(len(colours), dtype=np.uint32)
