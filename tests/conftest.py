@@ -108,17 +108,18 @@ def write_face(face_rgb):
     """`write_face(folder, kind, alpha=False, name="face")` writes the face; returns its path."""
     import numpy as np
 
+    from cutis.colour import LINEAR, SRGB
     from cutis.textures import Texture, write_texture
 
     def write(folder: Path, kind: str = "png8", alpha: bool = False, name: str = "face") -> Path:
         suffix, dtype = STORED[kind]
-        encoding = "linear" if suffix == ".exr" else "srgb"
+        space = LINEAR if suffix == ".exr" else SRGB
         count = 4 if alpha else 3
         blank = np.zeros((*face_rgb.shape[:2], count), dtype)
         if alpha:
             steps = np.linspace(0, 1, face_rgb.shape[1]) ** 2
             blank[..., 3] = steps if suffix == ".exr" else np.rint(steps * np.iinfo(dtype).max)
-        texture = Texture(blank, tuple("RGBA"[:count]), encoding, associated=suffix == ".exr")
+        texture = Texture(blank, tuple("RGBA"[:count]), space, associated=suffix == ".exr")
         path = folder / f"{name}{suffix}"
         everywhere = np.ones(face_rgb.shape[:2], bool)
         write_texture(texture.with_linear(face_rgb, everywhere), path)

@@ -58,12 +58,13 @@ def process():
 @pytest.fixture(scope="session")
 def estimated(write_face, face_mask, tmp_path_factory) -> Path:
     """out/ of `cutis estimate face.png`, the capture beside it; not to be written to."""
-    from cutis.apps.estimate import run
+    from cutis.apps.estimate_file import Settings, Task, calibrated, estimate_file
 
     folder = tmp_path_factory.mktemp("estimated")
     face = write_face(folder)
     out = folder / "out"
-    run(face, out, None, "none", "none", "default", "auto", False, lambda _: None)
+    task = Task(face, None, out, Settings())
+    estimate_file(task, calibrated([task], lambda *_: None), lambda *_: None)
     assert json.loads((out / "face.report.json").read_text("utf-8"))
     return out
 

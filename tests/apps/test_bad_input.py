@@ -11,6 +11,7 @@ import pytest
 from PIL import Image
 
 import cutis as package
+from cutis.colour import LINEAR
 from cutis.textures import Texture
 
 
@@ -76,8 +77,8 @@ def with_value(value):
     ("write", "message"),
     [
         (lambda folder, _: folder / "face.png", "no such file"),
-        (lambda folder, _: folder, "is a folder"),
-        (no_image, "is not a PNG, JPEG, TIFF or OpenEXR image"),
+        (lambda folder, _: folder, "there is no image in this folder"),
+        (no_image, "is not a PNG, JPEG, TIFF, OpenEXR, DPX or PSD image"),
         (nothing, "is empty"),
         (no_texels, "has no texels"),
         (truncated, "truncated"),
@@ -136,7 +137,7 @@ def test_masks(command, values, message, maps, cutis, one_line, tmp_path):
         (["--white", "1,1,99"], "white takes none, auto or three numbers"),
         (["--exposure", "bright"], "--exposure takes none, auto or one gain"),
         (["--exposure", "nan"], "exposure takes none, auto or one number"),
-        (["--encoding", "log"], "--encoding must be auto, srgb or linear"),
+        (["--colorspace", "log"], "unknown colour space 'log'"),
         (["--model", "nobody"], "unknown model 'nobody'"),
     ],
 )
@@ -283,7 +284,7 @@ def test_colours_that_are_no_albedo_are_announced(face_rgb, cutis, tmp_path):
     pixels = face_rgb.copy()
     pixels[2, 3] = (-0.01, 0.3, 0.2)
     pixels[5, :2] = (1.5, 0.9, 0.8)
-    package.write(Texture(pixels, ("R", "G", "B"), "linear"), tmp_path / "face.exr")
+    package.write(Texture(pixels, ("R", "G", "B"), LINEAR), tmp_path / "face.exr")
     ended = cutis("estimate", tmp_path / "face.exr", "-o", tmp_path / "out")
     assert ended.code == 0, ended.err
     lines = ended.out.splitlines()

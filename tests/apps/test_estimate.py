@@ -33,6 +33,8 @@ def test_maps_model_and_report_are_those_of_the_library(estimated):
     np.testing.assert_array_equal(model, skin.model_albedo)
     assert header["colorspace"] == "lin_rec709"
     found = json.loads((estimated / "face.report.json").read_text("utf-8"))
+    said = found.pop("colorspace")
+    assert said == "sRGB (assumed, the file says nothing)"
     assert found == json.loads(json.dumps(report(skin)))
 
 
@@ -77,20 +79,20 @@ def test_dots_in_names(write_face, cutis, tmp_path):
     assert names(tmp_path / "out.d") == sorted(expected)
     skin = load_maps(tmp_path / "out.d" / "face.v2.1001.skin.exr")
     assert skin.provenance["source"] == "../face.v2.1001.exr"
-    assert skin.provenance["source_encoding"] == "linear"
+    assert skin.provenance["source_colorspace"] == "auto"
 
 
-def test_mask_model_half_and_encoding(write_face, face_mask, cutis, tmp_path):
+def test_mask_model_half_and_colour_space(write_face, face_mask, cutis, tmp_path):
     face = write_face(tmp_path)
     Image.fromarray((face_mask * 255).astype(np.uint8)).save(tmp_path / "mask.png")
     ended = cutis(
         "estimate", face, "--mask", tmp_path / "mask.png", "--model", "aliaga2022", "--half",
-        "--encoding", "linear", "-o", tmp_path,
+        "--colorspace", "linear", "-o", tmp_path,
     )  # fmt: skip
     assert ended.code == 0, ended.err
     skin = load_maps(tmp_path / "face.skin.exr")
     assert skin.model == "aliaga2022"
-    assert skin.provenance["source_encoding"] == "linear"
+    assert skin.provenance["source_colorspace"] == "linear"
     np.testing.assert_allclose(skin.mask, face_mask, atol=0.003)
     direct = estimate(package.read(face, "linear"), skin.mask, model="aliaga2022")
     np.testing.assert_allclose(skin.melanin, direct.melanin, rtol=1e-3)

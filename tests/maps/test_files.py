@@ -12,7 +12,7 @@ import cutis
 from cutis.errors import CutisError
 from cutis.maps import estimate, find_source, load_maps, presets, save_maps, source_note
 from cutis.optics import NAMES, PARAMETERS
-from cutis.textures import read_channels, write_channels
+from cutis.textures import read_channels, read_texture, write_channels
 
 CONVERTED = '{"gains": [1, 1, 1], "origin": "none", "light": "A", "conversion": %s}'
 
@@ -24,7 +24,7 @@ def made(write_face, face_mask, tmp_path):
     (tmp_path / "out").mkdir()
     path = tmp_path / "out" / "face.skin.exr"
     skin = estimate(cutis.read(capture), face_mask, white=(1.1, 1.0, 0.93))
-    skin = dataclasses.replace(skin, provenance=source_note(capture, "srgb"))
+    skin = dataclasses.replace(skin, provenance=source_note(read_texture(capture)))
     skin.save(path)
     return capture, path, skin
 
@@ -65,7 +65,7 @@ def test_header_says_what_is_in_the_file(made):
     assert json.loads(header["cutis:calibration"])["gains"] == [1.1, 1.0, 0.93]
     assert header["cutis:source"] == "../face.png"
     assert header["cutis:source_sha256"] == hashlib.sha256(capture.read_bytes()).hexdigest()
-    assert header["cutis:source_encoding"] == "srgb"
+    assert header["cutis:source_colorspace"] == "auto"
 
 
 def test_edited_maps_edited_again_are_as_if_edited_at_once(made, tmp_path):
@@ -96,7 +96,7 @@ def test_edited_half_maps_change_only_what_was_edited(made, tmp_path):
 
 def test_source_is_found_where_the_header_says(made):
     capture, path, _ = made
-    assert find_source(load_maps(path), path).samefile(capture)
+    assert find_source(load_maps(path).provenance, path).samefile(capture)
 
 
 def test_source_is_found_beside_the_maps_after_both_moved(made, tmp_path):
@@ -106,39 +106,39 @@ def test_source_is_found_beside_the_maps_after_both_moved(made, tmp_path):
     shutil.move(capture, new / "face.png")
     shutil.move(path, new / "face.skin.exr")
     moved = new / "face.skin.exr"
-    assert find_source(load_maps(moved), moved) == new / "face.png"
+    assert find_source(load_maps(moved).provenance, moved) == new / "face.png"
     (new.parent / "face.png").write_bytes(b"another file of that name, where the header points")
-    assert find_source(load_maps(moved), moved) == new / "face.png"
+    assert find_source(load_maps(moved).provenance, moved) == new / "face.png"
 
 
 def test_source_may_be_given(made, tmp_path):
     capture, path, _ = made
     copy = tmp_path / "copy.png"
     shutil.move(capture, copy)
-    assert find_source(load_maps(path), path, copy) == copy
+    assert find_source(load_maps(path).provenance, path, copy) == copy
 
 
 def test_a_missing_source(made):
     capture, path, _ = made
     capture.unlink()
     with pytest.raises(CutisError, match=r"face\.png of face\.skin\.exr is missing; give it with"):
-        find_source(load_maps(path), path)
+        find_source(load_maps(path).provenance, path)
 
 
 def test_a_changed_source(made):
     capture, path, _ = made
     capture.write_bytes(capture.read_bytes() + b" ")
     with pytest.raises(CutisError, match=r"face\.png has changed since face\.skin\.exr"):
-        find_source(load_maps(path), path)
+        find_source(load_maps(path).provenance, path)
     with pytest.raises(CutisError, match="has changed"):
-        find_source(load_maps(path), path, capture)
+        find_source(load_maps(path).provenance, path, capture)
 
 
 def test_maps_without_a_source(made, tmp_path):
     _, _, skin = made
     dataclasses.replace(skin, provenance={}).save(tmp_path / "bare.exr")
     with pytest.raises(CutisError, match="does not name its capture; give it with --source"):
-        find_source(load_maps(tmp_path / "bare.exr"), tmp_path / "bare.exr")
+        find_source(load_maps(tmp_path / "bare.exr").provenance, tmp_path / "bare.exr")
 
 
 def spoiled(path, out, header=None, **changes):

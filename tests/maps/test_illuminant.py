@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cutis.albedo import albedo_space
-from cutis.colour import delta_e, light_conversion, reflectance_to_rgb
+from cutis.colour import LINEAR, delta_e, light_conversion, reflectance_to_rgb
 from cutis.maps import estimate, load_maps, report
 from cutis.optics import WAVELENGTHS
 from cutis.textures import Texture
@@ -32,7 +32,7 @@ def test_models_see_the_capture_under_d65(under_a):
 
 
 def test_what_is_not_edited_comes_back_bit_for_bit(under_a):
-    texture = Texture(under_a, ("R", "G", "B"), "linear")
+    texture = Texture(under_a, ("R", "G", "B"), LINEAR)
     skin = estimate(texture, illuminant="FL11", white=(0.9, 1.0, 1.1))
     np.testing.assert_array_equal(skin.albedo(), under_a)
     np.testing.assert_array_equal(skin.multiply(melanin=1.0).retouch(texture).pixels, under_a)

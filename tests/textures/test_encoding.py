@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import cutis.errors
+from cutis.colour import SRGB
 from cutis.errors import CutisError
 from cutis.textures import Texture, read_texture, write_texture
 
@@ -17,13 +18,14 @@ SCRIPT = """
     from pathlib import Path
     import numpy as np
     from cutis.errors import CutisError
+    from cutis.colour import LINEAR, SRGB
     from cutis.textures import Texture, read_texture, write_texture
 
     folder, name, dtype = Path(sys.argv[1]), sys.argv[2], sys.argv[3]
     random = np.random.default_rng(1)
     kind = np.dtype(dtype).kind
     pixels = (random.random((90, 70, 3)) * (255 if kind == "u" else 1)).astype(dtype)
-    one = Texture(pixels, ("R", "G", "B"), "srgb" if kind == "u" else "linear")
+    one = Texture(pixels, ("R", "G", "B"), SRGB if kind == "u" else LINEAR)
     path = folder / name
     write_texture(one, path)
     size, hard = path.stat().st_size, resource.getrlimit(resource.RLIMIT_FSIZE)[1]
@@ -97,7 +99,7 @@ def mount(tmp_path):
 def test_a_read_only_disk_is_explained(mount, one_line, name):
     path = mount(READ_ONLY) / name
     with pytest.raises(CutisError, match="read-only file system") as caught:
-        write_texture(Texture(np.zeros((2, 2, 3), np.uint8), ("R", "G", "B"), "srgb"), path)
+        write_texture(Texture(np.zeros((2, 2, 3), np.uint8), ("R", "G", "B"), SRGB), path)
     one_line(caught, path)
 
 
@@ -106,11 +108,11 @@ def test_a_full_disk_leaves_what_was_there(mount, one_line, name):
     small_disk = mount()
     noise = np.random.default_rng(1).integers(0, 256, (400, 400, 3)).astype(np.uint8)
     path = small_disk / name
-    small = Texture(noise[:8, :8], ("R", "G", "B"), "srgb")
+    small = Texture(noise[:8, :8], ("R", "G", "B"), SRGB)
     write_texture(small, path)
     before = path.read_bytes()
     with pytest.raises(CutisError, match="cannot be written") as caught:
-        write_texture(Texture(noise, ("R", "G", "B"), "srgb"), path)
+        write_texture(Texture(noise, ("R", "G", "B"), SRGB), path)
     one_line(caught, path)
     assert path.read_bytes() == before
     assert list(small_disk.iterdir()) == [path]
@@ -120,12 +122,12 @@ def test_a_full_disk_leaves_what_was_there(mount, one_line, name):
 def test_missing_folder(tmp_path, one_line, name):
     path = tmp_path / "no" / name
     with pytest.raises(CutisError, match="does not exist") as caught:
-        write_texture(Texture(np.zeros((2, 2, 3), np.uint8), ("R", "G", "B"), "srgb"), path)
+        write_texture(Texture(np.zeros((2, 2, 3), np.uint8), ("R", "G", "B"), SRGB), path)
     one_line(caught, path)
 
 
 def test_odd_names(tmp_path):
-    one = Texture(np.zeros((2, 2, 3), np.uint8), ("R", "G", "B"), "srgb")
+    one = Texture(np.zeros((2, 2, 3), np.uint8), ("R", "G", "B"), SRGB)
     for name in ["é ü.png", "a#1?x=2.png", "%04d.exr", "a:b.jpg", "-.tif", "x" * 240 + ".png"]:
         write_texture(one, tmp_path / name)
         assert read_texture(tmp_path / name).shape == (2, 2)

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from cutis.colour import LINEAR, SRGB
 from cutis.errors import CutisError
 from cutis.textures import read_channels, read_texture, write_texture
 
@@ -41,13 +42,13 @@ def refused(path, one_line, match):
 @pytest.mark.parametrize(
     ("extension", "dtype", "encoding"),
     [
-        ("png", "uint8", "srgb"),
-        ("png", "uint16", "srgb"),
-        ("tif", "uint8", "srgb"),
-        ("tif", "uint16", "srgb"),
-        ("tif", "float32", "linear"),
-        ("exr", "float16", "linear"),
-        ("exr", "float32", "linear"),
+        ("png", "uint8", SRGB),
+        ("png", "uint16", SRGB),
+        ("tif", "uint8", SRGB),
+        ("tif", "uint16", SRGB),
+        ("tif", "float32", LINEAR),
+        ("exr", "float16", LINEAR),
+        ("exr", "float32", LINEAR),
     ],
 )
 @pytest.mark.parametrize("count", [3, 4])
@@ -60,12 +61,12 @@ def test_stored_values_and_types_come_as_they_are(
     one = read_texture(path)
     assert one.pixels.dtype == dtype
     assert np.array_equal(one.pixels, pixels)
-    assert one.encoding == encoding
+    assert one.space == encoding
     assert one.shape == (12, 17)
     assert one.path == path
     assert one.associated == (extension == "exr" and count == 4)
-    assert read_texture(path, "linear").encoding == "linear"
-    assert read_texture(path, "srgb").encoding == "srgb"
+    assert read_texture(path, "linear").space == LINEAR
+    assert read_texture(path, "srgb").space == SRGB
 
 
 def test_jpeg_reads_with_its_orientation(tmp_path, make):
@@ -212,7 +213,7 @@ def test_missing_folder_empty_and_other_files(tmp_path, one_line):
         refused(tmp_path / name, one_line, "empty")
     for name, content in [("t.png", b"hello"), ("x.null", b"x" * 99), ("g.gif", b"GIF89a" * 9)]:
         (tmp_path / name).write_bytes(content)
-        refused(tmp_path / name, one_line, "not a PNG, JPEG, TIFF or OpenEXR")
+        refused(tmp_path / name, one_line, "not a PNG, JPEG, TIFF, OpenEXR, DPX or PSD")
     refused(tmp_path / "g.gif" / "x.png", one_line, "cannot be read")
 
 

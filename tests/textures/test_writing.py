@@ -4,6 +4,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
+from cutis.colour import LINEAR, SRGB
 from cutis.errors import CutisError
 from cutis.textures import Texture, read_texture, write_texture
 
@@ -159,12 +160,16 @@ def test_tiff_with_spare_channels_and_alpha(tmp_path, make, random):
     assert again.channelnames == spec.channelnames
 
 
-def test_ten_bit_becomes_sixteen(tmp_path, make, random):
-    attributes = {"oiio:BitsPerSample": 10}
-    path = make.image(tmp_path / "a.tif", pixels_of(random, "uint16"), attributes=attributes)
+@pytest.mark.parametrize("extension", ["tif", "dpx"])
+@pytest.mark.parametrize("bits", [10, 12])
+def test_ten_and_twelve_bits_survive(tmp_path, make, random, extension, bits):
+    path = make.image(
+        tmp_path / f"a.{extension}", pixels_of(random, "uint16"),
+        attributes={"oiio:BitsPerSample": bits},
+    )  # fmt: skip
     after, spec = make.read(rewritten(path, True))
     assert np.array_equal(after, make.read(path)[0])
-    assert spec.getattribute("oiio:BitsPerSample") == 16
+    assert spec.getattribute("oiio:BitsPerSample") == bits
 
 
 @pytest.mark.parametrize(("extension", "dtype"), STORED)
@@ -193,7 +198,7 @@ def test_every_format_to_every_other(
     other = {".png": "uint16", ".TIFF": "float32", ".exr": "float32"}
     assert two.pixels.dtype == expected.get(dtype, other.get(suffix))
     assert len(two.channels) == (3 if suffix == ".jpg" else count)
-    assert two.encoding == ("linear" if two.pixels.dtype.kind == "f" else "srgb")
+    assert two.space == (LINEAR if two.pixels.dtype.kind == "f" else SRGB)
     np.testing.assert_allclose(two.linear(), one.linear(), atol=0.02 if suffix == ".jpg" else 2e-3)
     if two.alpha() is not None:
         np.testing.assert_allclose(two.alpha(), one.alpha(), atol=1e-3)
@@ -224,16 +229,20 @@ def test_layered_exr_to_png_and_back_in_place(tmp_path, make, random):
 
 def test_a_texture_from_an_array(tmp_path):
     pixels = np.linspace(0, 1, 48, dtype=np.float32).reshape(4, 4, 3)
-    one = Texture(pixels, ("R", "G", "B"), "linear")
+    one = Texture(pixels, ("R", "G", "B"), LINEAR)
     for name in ("a.exr", "a.tif"):
         write_texture(one, tmp_path / name)
         assert np.array_equal(read_texture(tmp_path / name).pixels, pixels)
 
 
-def test_profile_goes_with_its_encoding(tmp_path, make, random):
+def test_profile_goes_with_its_space(tmp_path, make, random):
+    """A made-up profile cannot be used; it stays where the values stay, and goes with them."""
     profile = np.zeros(200, np.uint8)
     icc = {"ICCProfile": (oiio.TypeDesc("uint8[200]"), profile), "Artist": "me"}
     path = make.image(tmp_path / "a.tif", pixels_of(random, "float32"), attributes=icc)
+    assert read_texture(path).origin.startswith("assumed, its ICC profile cannot be used")
+    _, spec = make.read(rewritten(path, True))
+    assert len(spec.getattribute("ICCProfile")) == 200
     _, spec = make.read(rewritten(path, False, ".png"))
     assert spec.getattribute("ICCProfile") is None
     assert spec.getattribute("Artist") == "me"
@@ -241,7 +250,7 @@ def test_profile_goes_with_its_encoding(tmp_path, make, random):
 
 @pytest.mark.parametrize("name", ["a.gif", "a", "a.webp", "png"])
 def test_unknown_extensions_are_refused(tmp_path, one_line, name):
-    one = Texture(np.zeros((2, 2, 3), np.uint8), ("R", "G", "B"), "srgb")
+    one = Texture(np.zeros((2, 2, 3), np.uint8), ("R", "G", "B"), SRGB)
     with pytest.raises(CutisError, match="extension") as caught:
         write_texture(one, tmp_path / name)
     one_line(caught, tmp_path / name)

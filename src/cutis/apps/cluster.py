@@ -1,29 +1,24 @@
-"""Batches of a simulation on a Dask cluster."""
+"""Work on a Dask cluster, whose workers see the same files."""
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
 
 from cutis.errors import CutisError
-
-if TYPE_CHECKING:
-    from cutis.apps.journal import Simulation
 
 PATIENCE = 10
 """Seconds that a scheduler has to answer."""
 RETRIES = 10
-"""How often a batch may be taken away from a worker that died."""
+"""How often an item may be taken away from a worker that died."""
 
 
-def computed(
-    simulation: "Simulation", batches: list[int], address: str, device: str
-) -> Iterator[tuple[int, NDArray[np.float64]]]:
-    """(number, result) of batches as workers at the scheduler `address` finish them.
+def on_cluster(
+    address: str, function: Callable[..., Any], items: Sequence[Any], *arguments: Any
+) -> Iterator[tuple[Any, Any]]:
+    """(item, function(item, *arguments)) as workers at the scheduler `address` finish them.
 
-    A batch whose worker died goes to another one. Raises CutisError when the scheduler does not
-    answer within PATIENCE, has no workers, or a batch fails.
+    An item whose worker died goes to another one. Where the function failed, its exception takes
+    the place of the result. Raises CutisError when the scheduler does not answer within PATIENCE or
+    has no workers.
     """
     try:
         from distributed import Client, as_completed
@@ -43,13 +38,12 @@ def computed(
                 f"the scheduler at {address} has no workers; start some with: dask worker {address}"
             ) from error
         futures: dict[Any, int] = {
-            client.submit(simulation.compute, number, device, retries=RETRIES, pure=False): number
-            for number in batches
+            client.submit(function, item, *arguments, retries=RETRIES, pure=False): number
+            for number, item in enumerate(items)
         }
         try:
             for future in as_completed(futures):
-                if future.status != "finished":
-                    raise CutisError(f"batch {futures[future]} failed: {future.exception()}")
-                yield futures[future], future.result()
+                good = future.status == "finished"
+                yield items[futures[future]], future.result() if good else future.exception()
         finally:
             client.cancel(list(futures))

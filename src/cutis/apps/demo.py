@@ -24,33 +24,23 @@ def demo(
     """
     from cutis.apps import estimate
     from cutis.apps.console import out, steps
-    from cutis.apps.page import write_page
-    from cutis.apps.previews import write_colour
+    from cutis.apps.edit_file import Job, edit_file
+    from cutis.apps.estimate_file import Settings, Task, calibrated, estimate_file
     from cutis.errors import CutisError
     from cutis.maps import presets
-    from cutis.textures import write_texture
 
     examples = Path(__file__).parents[3] / "examples"
     if not (examples / CAPTURE).is_file():
         raise CutisError(
             "the demo needs a clone of the repository; for your own face: cutis estimate FILE"
         )
-    with steps(8, quiet) as progress:
-        skin, texture, results = estimate.run(
-            examples / CAPTURE, output, examples / MASK, "auto", "none", "default", "auto", False,
-            progress.step,
-        )  # fmt: skip
-        stem = output / Path(CAPTURE).stem
-        progress.step("tanning")
-        tanned = skin.apply(presets.tanning)
-        write_texture(tanned.retouch(texture), f"{stem}.tanned.png")
-        progress.step("writing the page")
-        assert skin.source is not None
-        write_colour(Path(f"{stem}.source.preview.png"), skin.source)
-        write_colour(Path(f"{stem}.model.preview.png"), skin.model_albedo)
-        write_colour(Path(f"{stem}.tanned.preview.png"), tanned.albedo())
-        page = output / "index.html"
-        write_page(page, stem, results, CREDIT)
+    task = Task(examples / CAPTURE, examples / MASK, output, Settings(white="auto", page=True))
+    with steps(1, quiet) as progress:
+        calibration = calibrated([task], progress.at)
+        results = estimate_file(task, calibration, progress.at)
+        tanned = Path(f"{task.stem}.tanned.png")
+        edit_file(Job(Path(f"{task.stem}.skin.exr"), tanned, presets.tanning), progress.at)
     if not quiet:
-        estimate.say(results, skin)
-        out.print(f"open {page}")
+        estimate.say(results, "auto")
+        out.print(f"wrote the tanned face to {tanned}")
+        out.print(f"open {task.stem}.report.html")

@@ -32,6 +32,8 @@ def edit(
         Path | None, typer.Option(help="The capture, if it is not where the maps say.")
     ] = None,
     method: options.Method = None,
+    output_colorspace: options.OutputColorspace = None,
+    ocio: options.Ocio = None,
     save_maps: Annotated[
         Path | None, typer.Option(help="Also write the edited maps to this EXR.")
     ] = None,
@@ -39,19 +41,18 @@ def edit(
 ) -> None:
     """Edit skin maps and write the albedo with the edit in it.
 
-    Texels that the edit does not change come back bit for bit; --mask paints where it applies.
+    Texels that the edit does not change come back bit for bit; --mask paints where it applies. Of
+    a UDIM set, give MAPS, the output and --mask as NAME.<UDIM>.EXT.
 
     Example: cutis edit out/face.skin.exr --melanin x1.4 --blood x0.5 -o tanned.png
     """
-    from dataclasses import replace
-
-    import numpy as np
-
     from cutis.apps.console import out, steps
+    from cutis.apps.edit_file import Job, edit_file
     from cutis.errors import CutisError
-    from cutis.maps import find_source, load_maps, parse_edit, source_note
+    from cutis.maps import parse_edit
     from cutis.maps.presets import preset as named
-    from cutis.textures import format_of, read_mask, read_texture, write_texture
+    from cutis.textures import colour_space, format_of
+    from cutis.textures.udim import TOKEN, tile_of, udim_tiles
 
     flags = {
         "melanin": melanin,
@@ -64,43 +65,28 @@ def edit(
     edits = [change for name in preset or [] for change in named(name)]
     edits += [parse_edit(name, text) for name, text in flags.items() if text is not None]
     format_of(output)  # fails now rather than after the work
-    with steps(4, quiet) as progress:
-        progress.step("reading")
-        skin = load_maps(maps)
-        if by_tensor is not None:
-            skin = replace(skin, model=by_tensor)
-        path = find_source(skin, maps, source)
-        encoding = skin.provenance.get("source_encoding", "auto")
-        for written in (output, save_maps):
-            if written is not None and _same(written, path):
-                raise CutisError(f"{written} is the capture itself; give another name")
-        if _same(output, maps) or (save_maps is not None and _same(output, save_maps)):
-            raise CutisError(f"{output} is a file of maps; give another name for the albedo")
-        texture = read_texture(path, options.encoding_name(encoding))
-        where = None if mask is None else read_mask(mask, skin.shape)
-        progress.step("editing")
-        edited = skin.apply(edits, where, amount=amount)
-        progress.step("decoding")
-        result = edited.retouch(texture)
-        progress.step("writing")
-        write_texture(result, output)
-        if save_maps is not None:
-            provenance = source_note(path, texture.encoding)
-            replace(edited, provenance=provenance).save(save_maps)
+    space = None if output_colorspace is None else colour_space(output_colorspace, ocio)
+    job = Job(maps, output, tuple(edits), amount, mask, source, by_tensor, space, save_maps)
+    jobs = [job]
+    if TOKEN in maps.name:
+        named_all = [path for path in (output, save_maps, source) if path is not None]
+        for path in named_all:
+            if TOKEN not in path.name:
+                raise CutisError(f"{path}: of a UDIM set, name it with {TOKEN} too")
+        jobs = [job.tile(number, tile_of) for number in udim_tiles(maps)]
+    found = []
+    with steps(len(jobs), quiet) as progress:
+        for number, one in enumerate(jobs):
+
+            def of_all(done: int, total: int, name: str, number: int = number) -> None:
+                progress.at(int(1000 * (number + done / total)), 1000 * len(jobs), name)
+
+            found.append(edit_file(one, of_all))
     if quiet:
         return
-    inside = int(np.count_nonzero(skin.mask))
-    done = len(skin.edits)  # by earlier runs
-    for text, clamped in zip(edited.edits[done:], edited.clamped[done:], strict=True):
-        share = f" ({100 * clamped / inside:.0f} % of the mask)"
-        note = f", {clamped:,} texels clamped to range{share}" if clamped else ""
-        out.print(f"{text}{note}")
-    changed = int(np.count_nonzero((result.pixels != texture.pixels).any(axis=-1)))
-    out.print(f"{changed:,} texels changed; wrote {output}")
-
-
-def _same(one: Path, other: Path) -> bool:
-    """Whether two names are of one file, also through links."""
-    return one.resolve() == other.resolve() or (
-        one.exists() and other.exists() and one.samefile(other)
-    )
+    for one, result in zip(jobs, found, strict=True):
+        for text, clamped in zip(result.edits, result.clamped, strict=True):
+            share = f" ({100 * clamped / max(result.inside, 1):.0f} % of the mask)"
+            note = f", {clamped:,} texels clamped to range{share}" if clamped else ""
+            out.print(f"{text}{note}")
+        out.print(f"{result.changed:,} texels changed; wrote {one.output}")

@@ -1,6 +1,6 @@
-"""`cutis estimate`: a capture in, maps, model albedo, previews and report out."""
+"""`cutis estimate`: captures in, maps, model albedo, previews and report out."""
 
-import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -9,12 +9,18 @@ import typer
 from cutis.apps import options
 
 if TYPE_CHECKING:
-    from cutis.maps import SkinMaps
-    from cutis.textures import Texture
+    from cutis.apps.batch import Outcome, Runner
 
 
 def estimate(
-    face: Annotated[Path, typer.Argument(help="Albedo texture: PNG, JPEG, TIFF or EXR.")],
+    faces: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="FACE...",
+            help="Albedo textures: PNG, JPEG, TIFF, TX, EXR, DPX, PSD; NAME.<UDIM>.EXT; a folder, "
+            "alone or with a pattern such as '*.exr'.",
+        ),
+    ],
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder for the results.")] = Path(
         "."
     ),
@@ -24,87 +30,124 @@ def estimate(
     illuminant: options.Illuminant = "D65",
     model: options.ModelName = "default",
     method: options.Method = None,
-    encoding: options.Encoding = "auto",
+    colorspace: options.Colorspace = "auto",
+    ocio: options.Ocio = None,
+    output_colorspace: options.OutputColorspace = None,
     half: Annotated[bool, typer.Option(help="Store the maps as half instead of float.")] = False,
+    report: Annotated[bool, typer.Option("--report", help="Also write NAME.report.html.")] = False,
+    regions: Annotated[
+        Path | None,
+        typer.Option(help="Picture in flat colours, one for each region to report on."),
+    ] = None,
+    udim: Annotated[bool, typer.Option("--udim", help="FACE is one tile of a UDIM set.")] = False,
+    sequence: Annotated[
+        bool, typer.Option("--sequence", help="All are of one person: share one calibration.")
+    ] = False,
+    jobs: Annotated[
+        int, typer.Option("--jobs", "-j", min=1, max=256, help="Processes to work in.")
+    ] = 1,
+    cluster: Annotated[
+        str | None, typer.Option(help="Dask scheduler to work on: tcp://host:8786.")
+    ] = None,
+    again: Annotated[
+        bool, typer.Option("--again", help="Also what is there already, made the same way.")
+    ] = False,
     quiet: options.Quiet = False,
 ) -> None:
-    """Estimate skin maps of an albedo texture.
+    """Estimate skin maps of albedo textures.
 
     Writes NAME.skin.exr (the maps), NAME.model.exr (what the model alone gives), NAME.report.json
-    and previews NAME.<map>.png.
+    and previews NAME.<map>.png for each.
 
     Example: cutis estimate face.png --mask mask.png --white auto -o out/
+
+    Example: cutis estimate show/ '*.exr' --jobs 4 -o out/
     """
+    from cutis.apps.batch import cluster as on_cluster
+    from cutis.apps.batch import estimate_sets, here, processes
     from cutis.apps.console import out, steps
+    from cutis.apps.estimate_file import Settings, Task
+    from cutis.apps.inputs import capture_sets, companion, gaps
+    from cutis.colour import light_conversion
     from cutis.errors import CutisError
+    from cutis.inverse import load_model
+    from cutis.textures import colour_space
 
     if method is not None:
         if model != "default":
             raise CutisError("give either --model or --method, not both")
         model = options.method_name(method)
-    with steps(6, quiet) as progress:
-        skin, _, results = run(
-            face, output, mask, white, exposure, model, encoding, half, progress.step, illuminant
-        )
-    if not quiet:
-        say(results, skin)
-        out.print(f"wrote {output / face.stem}.skin.exr and what belongs to it")
-
-
-def run(
-    face: Path,
-    output: Path,
-    mask: Path | None,
-    white: str,
-    exposure: str,
-    model: str,
-    encoding: str,
-    half: bool,
-    step: Any,
-    illuminant: str = "D65",
-) -> tuple["SkinMaps", "Texture", dict[str, Any]]:
-    """The work of the command; `step(name)` is called as each of six steps begins."""
-    import cutis.maps as maps
-    from cutis.apps.previews import write_previews
-    from cutis.colour import light_conversion
-    from cutis.textures import read_mask, read_texture, replacing, write_channels
-
-    light_conversion(illuminant)  # fails now rather than after reading
-    white_value, exposure_value = options.white_gains(white), options.exposure_gain(exposure)
-    step("reading")
-    texture = read_texture(face, options.encoding_name(encoding))
-    cover = None if mask is None else read_mask(mask, texture.shape)
-    options.make_folder(output)
-    stem = output / face.stem
-
-    step("estimating")
-    skin = maps.estimate(
-        texture, cover, white=white_value, exposure=exposure_value, model=model,
-        illuminant=illuminant,
+    settings = Settings(
+        white, exposure, illuminant, model, colorspace, ocio, output_colorspace or "linear", half,
+        report,
     )  # fmt: skip
+    # what is wrong with the flags is said now rather than after reading
+    light_conversion(illuminant)
+    options.white_gains(white), options.exposure_gain(exposure)
+    load_model(model)
+    for name in (settings.colorspace, settings.output_colorspace):
+        if name != "auto":
+            colour_space(name, ocio)
+    sets = [
+        [Task(face, companion(mask, face), output, settings, regions) for face in captures]
+        for captures in capture_sets(faces, udim, sequence)
+    ]
+    runner: Runner = here
+    if cluster is not None:
+        runner = on_cluster(cluster)
+    elif jobs > 1:
+        runner = processes(jobs)
+    alone = len(sets) == 1 and len(sets[0]) == 1
+    with steps(1, quiet) as progress:
+        found = list(estimate_sets(sets, runner, again or alone, progress.at))
+    failed = [outcome for outcome in found if outcome.failure is not None]
+    if alone and failed:
+        raise CutisError(str(failed[0].failure))
+    if not quiet:
+        for tasks in sets:
+            for name in gaps(tuple(task.face for task in tasks)):
+                out.print(f"{name} is missing between other tiles of its row")
+        if alone:
+            assert found[0].report is not None
+            say(found[0].report, white)
+            out.print(f"wrote {sets[0][0].stem}.skin.exr and what belongs to it")
+        else:
+            say_all(found, output)
+    if failed:
+        listed = "; ".join(_line(outcome) for outcome in failed)
+        raise CutisError(f"{len(failed)} of {len(found)} failed: {listed}")
 
-    step("writing maps")
-    skin.save(f"{stem}.skin.exr", "half" if half else "float")
-    step("writing the model's albedo")
-    albedo = skin.model_albedo
-    colour = {name: albedo[..., i] for i, name in enumerate("RGB")}
-    write_channels(f"{stem}.model.exr", colour, "half" if half else "float",
-                   {"colorspace": "lin_rec709"})  # fmt: skip
-    step("measuring")
-    results = maps.report(skin)
-    step("drawing previews")
-    write_previews(skin, stem)
-    with replacing(Path(f"{stem}.report.json")) as path:
-        path.write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
-    return skin, texture, results
+
+def _line(outcome: "Outcome") -> str:
+    text = str(outcome.failure)
+    return text if outcome.face.name in text else f"{outcome.face}: {text}"
 
 
-def say(results: dict[str, Any], skin: "SkinMaps") -> None:
-    """Prints what was found."""
+def say_all(found: Sequence["Outcome"], output: Path) -> None:
+    """Prints a line for each capture of many."""
+    from cutis.apps.console import out
+
+    for outcome in found:
+        if outcome.report is not None:
+            colour = outcome.report.get("colour")
+            error = "no skin colours" if colour is None else (
+                f"ΔE00 {colour['delta_e_mean']:.3f}, "
+                f"out of gamut {100 * colour['out_of_gamut']:.1f} %"
+            )  # fmt: skip
+            out.print(f"{outcome.face.name}: {error}")
+    done = sum(outcome.report is not None for outcome in found)
+    skipped = sum(outcome.skipped for outcome in found)
+    left = f", {skipped} were there already" if skipped else ""
+    out.print(f"{done} of {len(found)} estimated into {output}{left}")
+
+
+def say(results: dict[str, Any], white: str = "none") -> None:
+    """Prints what was found in one capture."""
     from cutis.apps.console import out, print_statistics
 
     gains = ", ".join(f"{g:.3f}" for g in results["calibration"]["gains"])
     light = results["calibration"]["illuminant"]
+    out.print(f"colour space: {results['colorspace']}")
     out.print(
         f"gains {gains} ({results['calibration']['origin']}), model {results['model']}"
         + (f", captured under {light}" if light != "D65" else "")
@@ -118,7 +161,7 @@ def say(results: dict[str, Any], skin: "SkinMaps") -> None:
             out.print(f"{results[key]:,} texels have a colour {what}, which is no albedo")
     colour = results.get("colour")
     if colour is None:
-        out.print("no texel inside the mask has the colour of skin; check mask and encoding")
+        out.print("no texel inside the mask has the colour of skin; check mask and colour space")
         return
     share = results["skin_texels"] / results["masked_texels"]
     out.print(
@@ -133,5 +176,5 @@ def say(results: dict[str, Any], skin: "SkinMaps") -> None:
     )
     if share < 0.2:
         out.print("That is a small part of the mask: darker texels are not in these numbers.")
-    if colour["out_of_gamut"] > 0.05 and skin.calibration.origin != "auto":
+    if colour["out_of_gamut"] > 0.05 and white != "auto":
         out.print("Many texels are out of gamut: try --white auto, or a tighter --mask.")

@@ -12,18 +12,30 @@ def info(maps: Annotated[Path, typer.Argument(help="Maps, NAME.skin.exr.")]) -> 
     Example: cutis info out/face.skin.exr
     """
     from cutis.apps.console import out, print_statistics
-    from cutis.maps import load_maps
+    from cutis.maps import MapsFile
+    from cutis.maps.statistics import MapStatistics
+    from cutis.optics import parameter
 
-    skin = load_maps(maps)
-    height, width = skin.shape
-    cover = float((skin.mask > 0).mean())
+    with MapsFile(maps) as file:
+        found, inside = MapStatistics(), 0
+        for rows in file.bands():
+            skin = file.rows(rows)
+            found.add(skin.parameters(), skin.mask > 0)
+            inside += int((skin.mask > 0).sum())
+        if not inside:
+            raise file.no_mask()
+    height, width = file.shape
+    cover = inside / (height * width)
     out.print(f"{maps.name}: {width} × {height} texels, {100 * cover:.1f} % skin")
-    gains = ", ".join(f"{g:.4f}" for g in skin.calibration.gains)
-    out.print(f"model {skin.model}; gains {gains} ({skin.calibration.origin})")
-    if skin.calibration.conversion is not None:
-        out.print(f"captured under {skin.calibration.light}, converted to D65")
-    for key, value in skin.provenance.items():
+    gains = ", ".join(f"{g:.4f}" for g in file.calibration.gains)
+    out.print(f"model {file.model}; gains {gains} ({file.calibration.origin})")
+    if file.calibration.conversion is not None:
+        out.print(f"captured under {file.calibration.light}, converted to D65")
+    for key, value in file.provenance.items():
         out.print(f"{key.replace('_', ' ')}: {value}")
-    for change in skin.edits:
+    for change in file.edits:
         out.print(f"edit: {change}")
-    print_statistics(skin.statistics())
+    print_statistics(
+        (name, parameter(name).unit, low, median, high)
+        for name, (low, median, high) in found.percentiles().items()
+    )

@@ -1,6 +1,7 @@
 """Flags that mean the same in every command."""
 
-from collections.abc import Sequence
+import contextlib
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -49,9 +50,23 @@ Skins = Annotated[
     typer.Argument(help="CSV of skins, a column per parameter; missing ones are typical."),
 ]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
-Encoding = Annotated[
+Colorspace = Annotated[
     str,
-    typer.Option("--encoding", help="auto (integers are sRGB, floats linear), srgb or linear."),
+    typer.Option(
+        "--colorspace",
+        help="Colour space of the capture: auto (what the file says), sRGB, linear, ACEScg, "
+        "Display P3, Rec.2020, or an OpenColorIO name, role or alias.",
+    ),
+]
+OutputColorspace = Annotated[
+    str | None,
+    typer.Option("--output-colorspace", help="Colour space to write; by default the capture's."),
+]
+Ocio = Annotated[
+    str | None,
+    typer.Option(
+        "--ocio", help="OpenColorIO configuration; by default $OCIO, else the ACES studio one."
+    ),
 ]
 
 
@@ -65,17 +80,6 @@ def exposure_gain(text: str) -> Literal["none", "auto"] | float:
     return (
         "auto" if text == "auto" else "none" if text == "none" else _numbers(text, "exposure", 1)[0]
     )
-
-
-def encoding_name(text: str) -> Literal["auto", "srgb", "linear"]:
-    """The value of --encoding."""
-    if text == "srgb":
-        return "srgb"
-    if text == "linear":
-        return "linear"
-    if text == "auto":
-        return "auto"
-    raise CutisError(f"--encoding must be auto, srgb or linear, not {text!r}")
 
 
 def method_name(text: str) -> str:
@@ -94,6 +98,20 @@ def make_folder(folder: Path) -> None:
     except OSError as error:
         reason = error.strerror or str(error)
         raise CutisError(f"{folder}: cannot make this folder ({reason.lower()})") from error
+
+
+@contextlib.contextmanager
+def made_folder(folder: Path) -> Iterator[None]:
+    """The same; folders that it made go again if the block fails and leaves them empty."""
+    new = [one for one in (folder, *folder.parents) if not one.exists()]
+    make_folder(folder)
+    try:
+        yield
+    except BaseException:
+        with contextlib.suppress(OSError):
+            for one in new:
+                one.rmdir()
+        raise
 
 
 def _numbers(text: str, name: str, count: int) -> list[float]:

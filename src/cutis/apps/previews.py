@@ -8,7 +8,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from cutis.colour import delta_e
 from cutis.figures.layout import COLOUR_MAPS
+from cutis.inverse import Calibration
 from cutis.maps import SkinMaps
 from cutis.optics import PARAMETERS
 from cutis.textures import replacing
@@ -19,41 +21,67 @@ LONGEST = 900
 
 def reduced(values: NDArray[np.float32]) -> NDArray[np.float32]:
     """Every n-th texel, so that the longer side is at most LONGEST."""
-    step = max(1, -(-max(values.shape[:2]) // LONGEST))
+    step = _step(values.shape[:2])
     return values[::step, ::step]
 
 
-def write_previews(skin: SkinMaps, stem: Path) -> None:
-    """Writes `stem`.<map>.png for the five maps and, with the capture, `stem`.error.png."""
-    inside = reduced(skin.mask) > 0
-    masked = skin.mask > 0
-    for known in PARAMETERS:
-        whole = getattr(skin, known.name)
-        low, high = np.percentile(whole[masked], [1, 99])
-        values = np.where(inside, reduced(whole), np.nan)
-        unit = "" if known.unit == "1" else f" [{known.unit}]"
-        _figure(
-            Path(f"{stem}.{known.name}.png"),
-            values,
-            f"{known.meaning}{unit}",
-            COLOUR_MAPS[known.name],
-            (float(low), float(high)),
-            known.root,
-        )
-    if skin.source is not None:
-        from cutis.colour import delta_e
+def _step(shape: tuple[int, ...]) -> int:
+    return max(1, -(-max(shape) // LONGEST))
 
-        error = delta_e(
-            skin.calibration.apply(reduced(skin.model_albedo)),
-            skin.calibration.apply(reduced(skin.source)),
-        )
-        _figure(
-            Path(f"{stem}.error.png"),
-            np.where(inside, error, np.nan),
-            "model against capture [ΔE00]",
-            "magma",
-            (0.0, 2.0),
-        )
+
+class Previews:
+    """Pictures of an estimate of (H, W) texels in the making: `add` its rows from the top."""
+
+    def __init__(self, calibration: Calibration, shape: tuple[int, int]) -> None:
+        self._calibration = calibration
+        self._step = _step(shape)
+        self._parts: dict[str, list[NDArray[np.float32]]] = {}
+        self._whole: dict[str, NDArray[np.float32]] | None = None
+
+    def add(self, skin: SkinMaps) -> None:
+        """The next rows."""
+        rows = slice(-skin.first_row % self._step, None, self._step)
+        for name, values in self._seen(skin).items():
+            self._parts.setdefault(name, []).append(values[rows, :: self._step].copy())
+
+    def _seen(self, skin: SkinMaps) -> dict[str, NDArray[np.float32]]:
+        found = {known.name: getattr(skin, known.name) for known in PARAMETERS}
+        found |= {"mask": skin.mask, "model": skin.model_albedo}
+        if skin.source is not None:
+            found["capture"] = skin.source
+        return found
+
+    def pictures(self) -> dict[str, NDArray[np.float32]]:
+        """Reduced pictures by name, NaN off the mask.
+
+        `capture` and `model` (h, w, 3) in linear sRGB, `error` (h, w) in ΔE00, the maps (h, w).
+        """
+        if self._whole is None:
+            whole = {name: np.concatenate(parts) for name, parts in self._parts.items()}
+            outside = whole.pop("mask") <= 0
+            if "capture" in whole:
+                how = self._calibration.apply
+                whole["error"] = delta_e(how(whole["model"]), how(whole["capture"]))
+            for name in whole.keys() - {"model", "capture"}:
+                whole[name] = np.where(outside, np.float32(np.nan), whole[name])
+            self._whole = whole
+        return self._whole
+
+    def write(self, stem: Path) -> None:
+        """Writes `stem`.<map>.png for the five maps and, with the capture, `stem`.error.png."""
+        pictures = self.pictures()
+        for known in PARAMETERS:
+            values = pictures[known.name]
+            low, high = known.low, known.high
+            if np.isfinite(values).any():
+                low, high = (float(v) for v in np.nanpercentile(values, [1, 99]))
+            unit = "" if known.unit == "1" else f" [{known.unit}]"
+            label, colours = f"{known.meaning}{unit}", COLOUR_MAPS[known.name]
+            path = Path(f"{stem}.{known.name}.png")
+            _figure(path, values, label, colours, (low, high), known.root)
+        if "error" in pictures:
+            label = "model against capture [ΔE00]"
+            _figure(Path(f"{stem}.error.png"), pictures["error"], label, "magma", (0.0, 2.0))
 
 
 def write_colour(path: Path, rgb: NDArray[np.float32]) -> None:

@@ -117,12 +117,17 @@ def simulate(
         _compare(simulation, reflectance, error)
 
 
+def _batch(number: int, simulation: "Simulation", device: str) -> Any:
+    return simulation.compute(number, device)
+
+
 def _run(
     simulation: "Simulation", journal: Any, device: str, cluster: str | None, quiet: bool
 ) -> None:
     """Computes what is missing, here or on a cluster."""
-    from cutis.apps.cluster import computed
+    from cutis.apps.cluster import on_cluster
     from cutis.apps.console import out, steps
+    from cutis.errors import CutisError
 
     missing = journal.missing()
     done = journal.count - len(missing)
@@ -131,7 +136,9 @@ def _run(
     with steps(journal.count, quiet) as progress:
         progress.at(done, journal.count, "walking")
         if cluster is not None:
-            for number, values in computed(simulation, missing, cluster, device):
+            for number, values in on_cluster(cluster, _batch, missing, simulation, device):
+                if isinstance(values, Exception):
+                    raise CutisError(f"batch {number} failed: {values}")
                 journal.put(number, values)
                 done += 1
                 progress.at(done, journal.count, "walking")

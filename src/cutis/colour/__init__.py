@@ -2,14 +2,17 @@
 
 from cutis.colour.difference import delta_e, is_skin_colour, ita, lab
 from cutis.colour.observer import illuminant
-from cutis.colour.spaces import SPACES, RGBSpace, rgb_space
+from cutis.colour.spaces import LINEAR, SPACES, SRGB, RGBSpace, Space, rgb_space
 from cutis.colour.spectra import reflectance_to_rgb, spectrum_to_rgb, spectrum_to_xyz
 from cutis.colour.transfer import decode_srgb, encode_srgb
 from cutis.colour.upsampling import light_conversion, mallett_basis, upsample
 
 __all__ = [
+    "LINEAR",
     "SPACES",
+    "SRGB",
     "RGBSpace",
+    "Space",
     "decode_srgb",
     "delta_e",
     "encode_srgb",

@@ -1,45 +1,48 @@
-"""What reports say of colours: CIELAB, CIEDE2000 and ITA°, by colour-science, under D65.
+"""What reports say of colours: CIELAB, CIEDE2000 and ITA°, under D65."""
 
-colour-science takes seconds to import, so it is imported where it is used.
-"""
-
-from collections.abc import Iterator
+from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutis.colour.spectra import XYZ_TO_SRGB
 
-BAND = 1 << 18
-"""Texels worked on at a time, so that memory does not grow with the image."""
 D65_WHITE = (0.3127, 0.3290)
 """Chromaticity x, y of the white of linear sRGB."""
 
 
-def _bands(count: int) -> Iterator[slice]:
-    return (slice(start, start + BAND) for start in range(0, count, BAND))
+@cache
+def _to_relative_xyz() -> NDArray[np.float64]:
+    """(3, 3) linear sRGB → XYZ over that of white."""
+    x, y = D65_WHITE
+    white = np.array([x / y, 1.0, (1 - x - y) / y])
+    # of the same RGB as spectra, so that greys stay neutral
+    return np.ascontiguousarray(np.linalg.inv(XYZ_TO_SRGB) / white[:, None])
+
+
+def _flat(rgb: ArrayLike) -> NDArray[np.floating]:
+    values = np.asarray(rgb)
+    kind = values.dtype if values.dtype in (np.float32, np.float64) else np.dtype(np.float64)
+    return np.ascontiguousarray(values.reshape(-1, 3), dtype=kind)
 
 
 def lab(rgb: ArrayLike) -> NDArray[np.float32]:
     """(..., 3) linear sRGB → (..., 3) CIELAB under D65 (L* 0–100, a*, b*)."""
-    from colour import XYZ_to_Lab
+    from cutis.colour.difference_kernel import lab_kernel
 
-    matrix = np.linalg.inv(XYZ_TO_SRGB)  # of the same RGB as spectra, so that greys stay neutral
-    flat = np.asarray(rgb).reshape(-1, 3)
+    flat = _flat(rgb)
     result = np.empty(flat.shape, dtype=np.float32)
-    for band in _bands(len(flat)):
-        result[band] = XYZ_to_Lab(flat[band].astype(np.float64) @ matrix.T, D65_WHITE)
+    lab_kernel(flat, _to_relative_xyz(), result)
     return result.reshape(np.shape(rgb))
 
 
 def delta_e(rgb_a: ArrayLike, rgb_b: ArrayLike) -> NDArray[np.float32]:
     """CIEDE2000 between (..., 3) linear sRGB colours → (...) [sharma2005ciede2000]."""
-    from colour.difference import delta_E_CIE2000
+    from cutis.colour.difference_kernel import delta_e_kernel
 
-    a, b = np.asarray(rgb_a).reshape(-1, 3), np.asarray(rgb_b).reshape(-1, 3)
+    a, b = _flat(rgb_a), _flat(rgb_b)
     result = np.empty(len(a), dtype=np.float32)
-    for band in _bands(len(a)):
-        result[band] = delta_E_CIE2000(lab(a[band]), lab(b[band]))
+    delta_e_kernel(a, b, _to_relative_xyz(), result)
     return result.reshape(np.shape(rgb_a)[:-1])
 
 

@@ -1,14 +1,16 @@
 """From a capture to its skin maps."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutis.errors import CutisError
-from cutis.inverse.calibration import Exposure, White, calibrate
+from cutis.inverse.calibration import Calibration, Exposure, White, calibrate
 from cutis.inverse.models import load_model
 from cutis.maps.files import source_note
+from cutis.maps.sampler import Sampler
 from cutis.maps.skin_maps import SkinMaps
 from cutis.optics import NAMES
 from cutis.textures.texture import Texture, bands
@@ -32,17 +34,15 @@ def estimate(
     """
     source = _linear(face)
     cover = _cover(face, mask, source.shape[:2])
-    inverse = load_model(model)
-    calibration = calibrate(_sample(source, cover), white, exposure, illuminant)
+    sampler = Sampler(cover.size)
+    while not sampler.enough():
+        sampler.add(0, source, cover)
+    calibration = calibrate(sampler.colours(), white, exposure, illuminant)
     maps: dict[str, Any] = {name: np.zeros(cover.shape, dtype=np.float32) for name in NAMES}
     for rows in bands(cover.shape):
-        inside = cover[rows] > 0
-        skins = inverse.encode(calibration.apply(source[rows][inside]))
-        for i, name in enumerate(NAMES):
-            maps[name][rows][inside] = skins[:, i]
-    provenance = {}
-    if isinstance(face, Texture) and face.path is not None and face.path.is_file():
-        provenance = source_note(face.path, face.encoding)
+        for name, values in estimate_rows(source[rows], cover[rows], calibration, model).items():
+            maps[name][rows] = values
+    provenance = source_note(face) if isinstance(face, Texture) else {}
     return SkinMaps(
         **maps,
         mask=cover,
@@ -51,6 +51,26 @@ def estimate(
         source=source,
         provenance=provenance,
     )
+
+
+def estimate_rows(
+    source: NDArray[np.float32], cover: NDArray[np.float32], calibration: Calibration, model: str
+) -> dict[str, NDArray[np.float32]]:
+    """Maps (h, W) by name of colours (h, W, 3), linear sRGB as captured, where `cover` is not 0."""
+    inside = cover > 0
+    skins = load_model(model).encode(calibration.apply(source[inside]))
+    maps = {name: np.zeros(cover.shape, dtype=np.float32) for name in NAMES}
+    for i, name in enumerate(NAMES):
+        maps[name][inside] = skins[:, i]
+    return maps
+
+
+def blank(
+    calibration: Calibration, model: str = "default", provenance: Mapping[str, str] | None = None
+) -> SkinMaps:
+    """Maps of no texels, with what a header says."""
+    nothing: dict[str, Any] = {name: np.zeros((0, 0), np.float32) for name in (*NAMES, "mask")}
+    return SkinMaps(**nothing, calibration=calibration, model=model, provenance=provenance or {})
 
 
 def _linear(face: Texture | ArrayLike) -> NDArray[np.float32]:
@@ -86,11 +106,3 @@ def _cover(
     if not (cover > 0).any():
         raise CutisError("the mask is empty: nothing is marked as skin")
     return cover
-
-
-def _sample(
-    source: NDArray[np.float32], cover: NDArray[np.float32], count: int = 200_000
-) -> NDArray[np.float32]:
-    """At most `count` colours that are surely inside the mask, evenly picked."""
-    inside = np.flatnonzero(cover >= 0.5 * cover.max())
-    return source.reshape(-1, 3)[inside[:: -(-len(inside) // count)]]

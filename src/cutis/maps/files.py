@@ -11,9 +11,11 @@ import contextlib
 import hashlib
 import json
 import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
-from typing import Any
+from types import TracebackType
+from typing import Any, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,81 +31,165 @@ ORIGINAL = "original."
 """Before the names of maps as they were before edits; maps that are the same are left out."""
 
 
-def save_maps(skin: SkinMaps, path: str | os.PathLike[str], dtype: str = "float") -> None:
+def save_maps(
+    skin: SkinMaps, path: str | os.PathLike[str], dtype: Literal["float", "half"] = "float"
+) -> None:
     """Writes maps and mask to `path` (.exr); `dtype` is float (exact) or half (11 bits)."""
-    channels = {name: getattr(skin, name) for name in (*NAMES, "mask")}
-    if skin.original is not None:
-        for name in NAMES:
-            before = getattr(skin.original, name)
-            if not np.array_equal(before, channels[name]):
-                channels[ORIGINAL + name] = before
+    before = skin.original
+    changed = () if before is None else tuple(
+        name for name in NAMES if not np.array_equal(getattr(before, name), getattr(skin, name))
+    )  # fmt: skip
+    with maps_writer(path, skin, skin.shape, dtype, changed) as write:
+        for rows in textures.bands(skin.shape):
+            write(skin.rows(rows))
+
+
+@contextlib.contextmanager
+def maps_writer(
+    path: str | os.PathLike[str],
+    like: SkinMaps,
+    shape: tuple[int, int],
+    dtype: Literal["float", "half"] = "float",
+    changed: Sequence[str] = (),
+) -> Iterator[Callable[[SkinMaps], None]]:
+    """What `save_maps` does, some rows at a time: yields a function that takes the next rows.
+
+    The header is that of `like`; `changed` names the maps that edits may have changed.
+    """
     header: dict[str, str | float | int] = {
         f"{PREFIX}{p.name}": f"{p.meaning} [{p.unit}], {p.low:g} to {p.high:g}" for p in PARAMETERS
     }
-    header[f"{PREFIX}model"] = skin.model
-    header[f"{PREFIX}calibration"] = json.dumps(asdict(skin.calibration))
-    if skin.edits:
-        header[f"{PREFIX}edits"] = json.dumps(list(zip(skin.edits, skin.clamped, strict=True)))
-    for key, value in skin.provenance.items():
+    header[f"{PREFIX}model"] = like.model
+    header[f"{PREFIX}calibration"] = json.dumps(asdict(like.calibration))
+    if like.edits:
+        header[f"{PREFIX}edits"] = json.dumps(list(zip(like.edits, like.clamped, strict=True)))
+    for key, value in like.provenance.items():
         header[f"{PREFIX}{key}"] = _from_folder(value, path) if key == "source" else value
     if dtype not in ("float", "half"):
         raise CutisError(f"maps are stored as float or half, not {dtype}")
-    textures.write_channels(path, channels, "half" if dtype == "half" else "float", header)
+    names = (*NAMES, "mask", *(ORIGINAL + name for name in changed))
+    with textures.channel_writer(path, names, shape, dtype, header) as put:
+
+        def write(part: SkinMaps) -> None:
+            channels = {name: getattr(part, name) for name in (*NAMES, "mask")}
+            for name in changed:
+                channels[ORIGINAL + name] = getattr(part.original or part, name)
+            put(channels)
+
+        yield write
+
+
+class MapsFile:
+    """An open file of skin maps: what its header says, and its maps some rows at a time.
+
+    `edits` and `clamped` are those of `SkinMaps`, `changed` names the maps whose values before
+    edits are stored too. Close it, or use it in a with block. Raises CutisError where channels are
+    missing, out of range, or the header is damaged.
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        self.path = Path(path)
+        if self.path.is_file() and self.path.suffix.lower() != ".exr":
+            raise CutisError(
+                f"{self.path.name} is not a file of skin maps (NAME.skin.exr); "
+                "make one from a texture with: cutis estimate"
+            )
+        self._file = textures.ChannelFile(path)
+        try:
+            self._read_header()
+        except BaseException:
+            self.close()
+            raise
+
+    def _read_header(self) -> None:
+        missing = [name for name in NAMES if name not in self._file.names]
+        if missing:
+            raise CutisError(
+                f"{self.path.name}: not a file of skin maps (no channel {', '.join(missing)}); "
+                "make one with: cutis estimate"
+            )
+        self.shape = self._file.shape
+        self.changed = tuple(name for name in NAMES if ORIGINAL + name in self._file.names)
+        metadata = self._file.metadata
+        notes = {k[len(PREFIX) :]: str(v) for k, v in metadata.items() if k.startswith(PREFIX)}
+        try:
+            self.calibration = _calibration(notes.pop("calibration", "{}"))
+            edits = [
+                (str(edit), int(clamped)) for edit, clamped in json.loads(notes.pop("edits", "[]"))
+            ]
+        except (ValueError, KeyError, TypeError, np.linalg.LinAlgError) as error:
+            raise CutisError(f"{self.path.name}: its header is damaged; estimate again") from error
+        self.edits = tuple(edit for edit, _ in edits)
+        self.clamped = tuple(clamped for _, clamped in edits)
+        self.model = notes.pop("model", "default")
+        self.provenance = {key: value for key, value in notes.items() if key not in NAMES}
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Lets go of the file."""
+        self._file.close()
+
+    def bands(self) -> Iterator[slice]:
+        """Slices of rows that cover the maps, of about half a million texels each."""
+        return self._file.bands()
+
+    def rows(self, rows: slice) -> SkinMaps:
+        """Maps of some rows, without their capture."""
+        channels = self._file.rows(rows)
+        mask = channels.get("mask", np.ones(channels["melanin"].shape, dtype=np.float32))
+        if not (mask.min() >= 0 and mask.max() <= 1):  # NaN fails too
+            raise self.no_mask()
+        found: dict[str, Any] = {
+            p.name: _checked(self.path, channels[p.name], p, mask) for p in PARAMETERS
+        }
+        skin = SkinMaps(
+            **found, mask=mask, calibration=self.calibration, model=self.model,
+            provenance=self.provenance, first_row=rows.indices(self.shape[0])[0], whole=self.shape,
+        )  # fmt: skip
+        if not (self.edits or self.changed):
+            return skin
+        before: dict[str, Any] = {
+            p.name: _checked(self.path, channels[ORIGINAL + p.name], p, mask)
+            for p in PARAMETERS
+            if p.name in self.changed
+        }
+        original = replace(skin, **before)
+        return replace(skin, original=original, edits=self.edits, clamped=self.clamped)
+
+    def no_mask(self) -> CutisError:
+        """What to raise when the mask is empty or broken."""
+        return CutisError(
+            f"{self.path.name}: its mask is empty or not within 0 to 1; estimate again"
+        )
 
 
 def load_maps(path: str | os.PathLike[str]) -> SkinMaps:
     """Reads what `save_maps` wrote; CutisError when channels are missing or out of range."""
-    path = Path(path)
-    if path.is_file() and path.suffix.lower() != ".exr":
-        raise CutisError(
-            f"{path.name} is not a file of skin maps (NAME.skin.exr); "
-            "make one from a texture with: cutis estimate"
-        )
-    channels, metadata = textures.read_channels(path)
-    missing = [name for name in NAMES if name not in channels]
-    if missing:
-        raise CutisError(
-            f"{path.name}: not a file of skin maps (no channel {', '.join(missing)}); "
-            "make one with: cutis estimate"
-        )
-    mask = channels.get("mask", np.ones(channels["melanin"].shape, dtype=np.float32))
-    if not (mask.min() >= 0 and 0 < mask.max() <= 1):  # NaN fails too
-        raise CutisError(f"{path.name}: its mask is empty or not within 0 to 1; estimate again")
-    maps: dict[str, Any] = {p.name: _checked(path, channels[p.name], p, mask) for p in PARAMETERS}
-    before = {
-        p.name: _checked(path, channels[ORIGINAL + p.name], p, mask)
-        for p in PARAMETERS
-        if ORIGINAL + p.name in channels
-    }
-    notes = {k[len(PREFIX) :]: str(v) for k, v in metadata.items() if k.startswith(PREFIX)}
-    try:
-        stored = json.loads(notes.pop("calibration", '{"gains": [1, 1, 1], "origin": "none"}'))
-        red, green, blue = (float(g) for g in stored["gains"])
-        if not all(0 < gain < float("inf") for gain in (red, green, blue)):
-            raise ValueError("gains must be positive")
-        light, conversion = str(stored.get("light", "D65")), stored.get("conversion")
-        if conversion is not None:
-            conversion = tuple(tuple(float(v) for v in row) for row in conversion)
-            if not np.isfinite(np.linalg.inv(np.array(conversion)) @ np.ones(3)).all():
-                raise ValueError("the conversion of light must be invertible")
-        calibration = Calibration((red, green, blue), str(stored["origin"]), light, conversion)
-        edits = [
-            (str(edit), int(clamped)) for edit, clamped in json.loads(notes.pop("edits", "[]"))
-        ]
-    except (ValueError, KeyError, TypeError, np.linalg.LinAlgError) as error:
-        raise CutisError(f"{path.name}: its header is damaged; estimate again") from error
-    model = notes.pop("model", "default")
-    provenance = {key: value for key, value in notes.items() if key not in NAMES}
-    skin = SkinMaps(**maps, mask=mask, calibration=calibration, model=model, provenance=provenance)
-    if not (edits or before):
-        return skin
-    changes: dict[str, Any] = before
-    return replace(
-        skin,
-        original=replace(skin, **changes),
-        edits=tuple(edit for edit, _ in edits),
-        clamped=tuple(clamped for _, clamped in edits),
-    )
+    with MapsFile(path) as file:
+        skin = file.rows(slice(None))
+        if not skin.mask.max() > 0:
+            raise file.no_mask()
+    return skin
+
+
+def _calibration(text: str) -> Calibration:
+    stored = {"gains": [1, 1, 1], "origin": "none", **json.loads(text)}
+    red, green, blue = (float(g) for g in stored["gains"])
+    if not all(0 < gain < float("inf") for gain in (red, green, blue)):
+        raise ValueError("gains must be positive")
+    light, conversion = str(stored.get("light", "D65")), stored.get("conversion")
+    if conversion is not None:
+        conversion = tuple(tuple(float(v) for v in row) for row in conversion)
+        if not np.isfinite(np.linalg.inv(np.array(conversion)) @ np.ones(3)).all():
+            raise ValueError("the conversion of light must be invertible")
+    return Calibration((red, green, blue), str(stored["origin"]), light, conversion)
 
 
 def load_skin(
@@ -117,16 +203,15 @@ def load_skin(
     path = Path(path)
     skin = load_maps(path)
     try:
-        capture = find_source(skin, path, None if source is None else Path(source))
+        capture = find_source(skin.provenance, path, None if source is None else Path(source))
     except CutisError:
         if source is not None:
             raise
         return skin
-    encoding = skin.provenance.get("source_encoding")
-    texture = textures.read_texture(capture, "srgb" if encoding == "srgb" else "linear")
-    colours = texture.linear()
+    with open_source(skin.provenance, capture) as file:
+        colours = file.read().linear()
+        note = source_note(file)
     original = skin.original and replace(skin.original, source=colours)
-    note = source_note(capture, texture.encoding)
     return replace(skin, source=colours, original=original, provenance=note)
 
 
@@ -154,30 +239,40 @@ def _from_folder(source: str, maps: str | os.PathLike[str]) -> str:
     return source
 
 
-def source_note(source: Path, encoding: str) -> dict[str, str]:
-    """Provenance of a capture: its whole path, SHA-256 and encoding.
+def source_note(source: textures.TextureFile | textures.Texture) -> dict[str, str]:
+    """Provenance of a capture: its whole path, SHA-256 and the colour space it was read in.
 
-    `save_maps` stores the path as seen from the folder of the maps.
+    `save_maps` stores the path as seen from the folder of the maps. Empty without a file.
     """
-    return {
-        "source": source.resolve().as_posix(),
-        "source_sha256": digest(source),
-        "source_encoding": encoding,
+    if source.path is None or not source.path.is_file():
+        return {}
+    note = {
+        "source": source.path.resolve().as_posix(),
+        "source_sha256": digest(source.path),
+        "source_colorspace": source.space.name if source.origin == "given" else "auto",
     }
+    config = getattr(source.space, "config", None)
+    return {**note, "source_ocio": config} if config and source.origin == "given" else note
 
 
-def find_source(skin: SkinMaps, maps_path: Path, given: Path | None = None) -> Path:
-    """The capture that maps were made from: `given`, or what their header names.
+def open_source(provenance: Mapping[str, str], capture: Path) -> textures.TextureFile:
+    """The capture that maps were made from, opened and understood as it was then."""
+    space = provenance.get("source_colorspace", "auto")
+    return textures.TextureFile(capture, space, provenance.get("source_ocio"))
+
+
+def find_source(provenance: Mapping[str, str], maps_path: Path, given: Path | None = None) -> Path:
+    """The capture that maps were made from: `given`, or what their provenance names.
 
     Raises CutisError when it is gone or has changed since.
     """
-    name = skin.provenance.get("source")
+    name = provenance.get("source")
     if given is None and name is None:
         raise CutisError(f"{maps_path.name} does not name its capture; give it with --source")
     beside = maps_path.parent
     candidates = [given] if given else [beside / str(name), beside / Path(str(name)).name]
     present = [candidate for candidate in candidates if candidate.is_file()]
-    expected = skin.provenance.get("source_sha256")
+    expected = provenance.get("source_sha256")
     for candidate in present:
         if expected is None or digest(candidate) == expected:
             return candidate

@@ -1,4 +1,4 @@
-"""What an estimate can be trusted for, in numbers."""
+"""What an estimate can be trusted for, in numbers, gathered some rows at a time."""
 
 from typing import Any
 
@@ -8,11 +8,90 @@ from numpy.typing import NDArray
 from cutis.colour import delta_e, is_skin_colour, ita
 from cutis.errors import CutisError
 from cutis.maps.skin_maps import SkinMaps
-from cutis.optics import NAMES, to_coordinates
+from cutis.maps.statistics import Histogram, MapStatistics
+from cutis.optics import NAMES, parameter, to_coordinates
 from cutis.textures.texture import bands
 
 GAMUT_DELTA_E = 1.0
 """CIEDE2000 beyond which the model does not explain a texel: it is out of gamut."""
+
+
+class Report:
+    """The numbers of a report in the making: `add` the rows of an estimate from top to bottom."""
+
+    def __init__(self, like: SkinMaps, shape: tuple[int, int]) -> None:
+        """Of an estimate with the model and calibration of `like`, (H, W) texels in all."""
+        self._like, self._shape = like, shape
+        self._maps = MapStatistics()
+        self._errors = Histogram(0.0, 100.0)
+        self._angles = Histogram(-180.0, 180.0)
+        self._squares, self._masked, self._below, self._above, self._beyond = 0.0, 0, 0, 0, 0
+        self._smoothness = Smoothness()
+
+    def add(self, skin: SkinMaps) -> None:
+        """The next rows, with their capture."""
+        for rows in bands(skin.shape):
+            self._add(skin.rows(rows))
+
+    def _add(self, skin: SkinMaps) -> None:
+        if skin.source is None:
+            raise CutisError("a report needs the capture; read it and estimate again")
+        inside = skin.mask > 0
+        source = skin.source[inside]
+        self._masked += len(source)
+        self._below += int(np.count_nonzero((source < 0).any(axis=1)))
+        self._above += int(np.count_nonzero((source > 1).any(axis=1)))
+        truth = skin.calibration.apply(source)
+        texels = is_skin_colour(truth)
+        where = np.zeros(skin.shape, dtype=bool)
+        where[inside] = texels
+        truth = truth[texels]
+        model = skin.calibration.apply(skin.model_albedo[where])
+        self._squares += float(np.sum((model - truth) ** 2, dtype=np.float64))
+        errors = delta_e(model, truth)
+        self._errors.add(errors)
+        self._beyond += int(np.count_nonzero(errors > GAMUT_DELTA_E))
+        self._angles.add(ita(truth))
+        self._maps.add(skin.parameters(), inside)
+        self._smoothness.add(skin, where)
+
+    def finish(self) -> dict[str, Any]:
+        """The numbers; see `report`."""
+        like, statistics = self._like, self._maps
+        percentiles, histograms = statistics.percentiles(), statistics.histograms()
+        result: dict[str, Any] = {
+            "model": like.model,
+            "size": list(self._shape),
+            "masked_texels": self._masked,
+            "skin_texels": self._errors.count,
+            "below_0": self._below,
+            "above_1": self._above,
+            "calibration": {
+                "gains": [round(g, 5) for g in like.calibration.gains],
+                "origin": like.calibration.origin,
+                "illuminant": like.calibration.light,
+            },
+            "maps": {
+                name: {
+                    "unit": parameter(name).unit,
+                    **dict(zip(("p5", "median", "p95"), percentiles[name], strict=True)),
+                    "histogram": histograms[name],
+                }
+                for name in NAMES
+            },
+            "clamped": statistics.clamped(),
+        }
+        count = self._errors.count
+        if count:
+            result["colour"] = {
+                "mse": self._squares / (3 * count),
+                "delta_e_mean": self._errors.mean(),
+                "delta_e_p95": self._errors.percentile(0.95),
+                "out_of_gamut": self._beyond / count,
+                "ita_median": self._angles.percentile(0.5),
+            }
+            result["smoothness"] = self._smoothness.finish()
+        return result
 
 
 def report(skin: SkinMaps) -> dict[str, Any]:
@@ -22,72 +101,40 @@ def report(skin: SkinMaps) -> dict[str, Any]:
     mask, L* > 35 and C*ab > 12; without any, `colour` and `smoothness` are left out. `smoothness`
     is the mean difference of neighbouring texels of a map, in network coordinates, over that of
     the capture (mean over R, G, B). `below_0` and `above_1` count texels inside the mask with a
-    colour that is no albedo.
+    colour that is no albedo. Percentiles are read from histograms of 65 536 bins and more;
+    `clamped` is the share of texels at an end of a map's range, `histogram` 64 bars for people.
     """
-    if skin.source is None:
-        raise CutisError("a report needs the capture; read it and estimate again")
-    where = np.zeros(skin.shape, dtype=bool)
-    errors, angles = [], []
-    squares, masked, below, above = 0.0, 0, 0, 0
-    for rows in bands(skin.shape):
-        inside = skin.mask[rows] > 0
-        source = skin.source[rows][inside]
-        masked += len(source)
-        below += int(np.count_nonzero((source < 0).any(axis=1)))
-        above += int(np.count_nonzero((source > 1).any(axis=1)))
-        truth = skin.calibration.apply(source)
-        texels = is_skin_colour(truth)
-        where[rows][inside] = texels
-        truth = truth[texels]
-        model = skin.calibration.apply(skin.model_albedo[rows][inside][texels])
-        squares += float(np.sum((model - truth) ** 2, dtype=np.float64))
-        errors.append(delta_e(model, truth))
-        angles.append(ita(truth))
-    result: dict[str, Any] = {
-        "model": skin.model,
-        "size": list(skin.shape),
-        "masked_texels": masked,
-        "skin_texels": int(where.sum()),
-        "below_0": below,
-        "above_1": above,
-        "calibration": {
-            "gains": [round(g, 5) for g in skin.calibration.gains],
-            "origin": skin.calibration.origin,
-            "illuminant": skin.calibration.light,
-        },
-        "maps": {
-            name: {"unit": unit, "p5": low, "median": median, "p95": high}
-            for name, unit, low, median, high in skin.statistics()
-        },
-    }
-    if where.any():
-        error = np.concatenate(errors)
-        result["colour"] = {
-            "mse": squares / (3 * error.size),
-            "delta_e_mean": float(error.mean(dtype=np.float64)),
-            "delta_e_p95": float(np.percentile(error, 95)),
-            "out_of_gamut": float(np.mean(error > GAMUT_DELTA_E)),
-            "ita_median": float(np.median(np.concatenate(angles))),
+    running = Report(skin, skin.shape)
+    running.add(skin)
+    return running.finish()
+
+
+class Smoothness:
+    """Mean neighbour difference of each map over that of the capture, over chosen texels."""
+
+    def __init__(self) -> None:
+        self._maps, self._colour = np.zeros(5), np.zeros(3)
+        self._last: tuple[NDArray[np.bool_], NDArray[np.floating], NDArray[np.floating]] | None
+        self._last = None
+
+    def add(self, skin: SkinMaps, where: NDArray[np.bool_]) -> None:
+        """The next rows, with the texels (h, W) that count."""
+        assert skin.source is not None
+        u = to_coordinates(np.where(where[..., None], skin.parameters(), 1))
+        below = where[:, 1:] & where[:, :-1], where[1:] & where[:-1]
+        for values, total in ((u, self._maps), (skin.source, self._colour)):
+            total += np.abs(np.diff(values, axis=1))[below[0]].sum(axis=0, dtype=np.float64)
+            total += np.abs(np.diff(values, axis=0))[below[1]].sum(axis=0, dtype=np.float64)
+        if self._last is not None:  # from the last row of what came before to the first of this
+            both = self._last[0] & where[0]
+            self._maps += np.abs(u[0] - self._last[1])[both].sum(axis=0, dtype=np.float64)
+            self._colour += np.abs(skin.source[0] - self._last[2])[both].sum(axis=0, dtype=float)
+        self._last = where[-1].copy(), u[-1].copy(), skin.source[-1].copy()
+
+    def finish(self) -> dict[str, float]:
+        """The ratio for each map; 0 where the capture is flat."""
+        base = float(self._colour.mean())
+        return {
+            name: float(m / base) if base else 0.0
+            for name, m in zip(NAMES, self._maps, strict=True)
         }
-        result["smoothness"] = smoothness(skin, where)
-    return result
-
-
-def smoothness(skin: SkinMaps, where: NDArray[np.bool_]) -> dict[str, float]:
-    """Mean neighbour difference of each map over that of the capture, over texels `where`."""
-    if skin.source is None:
-        raise CutisError("smoothness needs the capture; read it and estimate again")
-    maps, colour = np.zeros(5), np.zeros(3)
-    for rows in bands(skin.shape):
-        more = slice(rows.start, rows.stop + 1)  # the next row, for the differences downwards
-        here = where[more]
-        along, down = here[:, 1:] & here[:, :-1], here[1:] & here[:-1]
-        along = along[: rows.stop - rows.start]
-        u = to_coordinates(np.where(here[..., None], skin.parameters(more), 1))
-        for values, total in ((u, maps), (skin.source[more], colour)):
-            sideways = np.abs(np.diff(values[: len(along)], axis=1))[along]
-            downwards = np.abs(np.diff(values, axis=0))[down]
-            total += sideways.sum(axis=0, dtype=np.float64)
-            total += downwards.sum(axis=0, dtype=np.float64)
-    base = float(colour.mean())
-    return {name: float(m / base) if base else 0.0 for name, m in zip(NAMES, maps, strict=True)}

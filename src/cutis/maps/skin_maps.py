@@ -4,7 +4,7 @@ import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,6 +14,7 @@ from cutis.inverse.calibration import Calibration
 from cutis.inverse.models import load_model
 from cutis.maps.edits import Edit
 from cutis.maps.patches import patches
+from cutis.maps.statistics import MapStatistics
 from cutis.optics import NAMES, parameter
 from cutis.textures.texture import Texture, bands
 
@@ -32,7 +33,8 @@ class SkinMaps:
     capture, linear sRGB (H, W, 3), or None when only the maps were loaded. `original` is the
     estimate that this was edited from, None for an estimate itself; `edits` what was done since,
     and `clamped` how many texels each edit pushed against the end of a range. `provenance` is
-    free text for the file header.
+    free text for the file header. Of some rows of a larger image, `first_row` is the number of the
+    first and `whole` the (H, W) of all.
 
     All arrays are read-only: a map changed in place would not count as an edit.
     """
@@ -50,6 +52,8 @@ class SkinMaps:
     edits: tuple[str, ...] = ()
     clamped: tuple[int, ...] = ()
     provenance: Mapping[str, str] = field(default_factory=dict)
+    first_row: int = 0
+    whole: tuple[int, int] | None = None
 
     def __post_init__(self) -> None:
         for name in (*NAMES, "mask", "source"):
@@ -72,6 +76,19 @@ class SkinMaps:
         """(H, W, 5) parameters, or those of some rows."""
         rows = slice(None) if rows is None else rows
         return np.stack([getattr(self, name)[rows] for name in NAMES], axis=-1)
+
+    def rows(self, rows: slice) -> "SkinMaps":
+        """The maps of some rows, capture and original included."""
+        first = rows.indices(self.shape[0])[0]
+        parts: dict[str, Any] = {name: getattr(self, name)[rows] for name in (*NAMES, "mask")}
+        return replace(
+            self,
+            **parts,
+            source=None if self.source is None else self.source[rows],
+            original=None if self.original is None else self.original.rows(rows),
+            first_row=self.first_row + first,
+            whole=self.whole or self.shape,
+        )
 
     # editing --------------------------------------------------------------------------------
 
@@ -109,14 +126,14 @@ class SkinMaps:
         if not 0 <= amount <= 1:
             raise CutisError(f"the amount of an edit must lie in 0 to 1, not {amount:g}")
         edits = [edits] if isinstance(edits, Edit) else list(edits)
-        whole = np.float32(amount) * self._weight(where)
+        everywhere = np.float32(amount) * self._weight(where)
         how = (f", amount {amount:g}" if amount < 1 else "") + (
             ", painted" if where is not None else ""
         )
         result = self
         for edit in edits:
             procedural = where is None and edit.where == "patches"
-            weight = whole * patches(self.shape) if procedural else whole
+            weight = everywhere * self._patches() if procedural else everywhere
             edited, clamped = edit(getattr(result, edit.parameter), weight)
             changes: dict[str, Any] = {edit.parameter: edited}
             result = replace(
@@ -127,6 +144,11 @@ class SkinMaps:
                 clamped=(*result.clamped, clamped),
             )
         return result
+
+    def _patches(self) -> Map:
+        """(H, W) weights of procedural patches; those of the whole image, in some rows of it."""
+        rows = slice(self.first_row, self.first_row + self.shape[0])
+        return patches(self.whole or self.shape, rows)
 
     def _weight(self, where: ArrayLike | None) -> Map:
         """(H, W) 0–1: `where`, and nothing outside the skin."""
@@ -140,7 +162,7 @@ class SkinMaps:
             raise CutisError("the edit mask must hold values from 0 to 1")
         return weight * inside
 
-    def save(self, path: str | os.PathLike[str], dtype: str = "float") -> None:
+    def save(self, path: str | os.PathLike[str], dtype: Literal["float", "half"] = "float") -> None:
         """Writes maps and mask as channels of one EXR; `dtype` float (exact) or half."""
         from cutis.maps.files import save_maps
 
@@ -183,7 +205,7 @@ class SkinMaps:
         everywhere = np.zeros(self.shape, dtype=bool)
         colours = np.zeros((*self.shape, 3), dtype=np.float32)
         for rows in bands(self.shape):
-            changed, edited = self._changes(rows, texture.linear_rows(rows))
+            changed, edited = self._changes(rows, texture.rows(rows).linear())
             everywhere[rows] = changed
             colours[rows][changed] = edited
         return texture.with_linear(colours, everywhere)
@@ -236,7 +258,8 @@ class SkinMaps:
 
     def statistics(self) -> Iterator[tuple[str, str, float, float, float]]:
         """(name, unit, 5th percentile, median, 95th percentile) of each map inside the mask."""
-        inside = self.mask > 0
-        for name in NAMES:
-            low, median, high = np.percentile(getattr(self, name)[inside], [5, 50, 95])
-            yield name, parameter(name).unit, float(low), float(median), float(high)
+        found = MapStatistics()
+        for rows in bands(self.shape):
+            found.add(self.parameters(rows), self.mask[rows] > 0)
+        for name, (low, median, high) in found.percentiles().items():
+            yield name, parameter(name).unit, low, median, high

@@ -1,21 +1,27 @@
 """Image files: textures as stored, masks and named channels, read and written without surprises."""
 
 from cutis.textures.atomic import replacing
-from cutis.textures.channels import read_channels, write_channels
-from cutis.textures.mask import read_mask
-from cutis.textures.reading import read_texture
-from cutis.textures.texture import Encoding, Texture, out_of_range
-from cutis.textures.writing import format_of, write_texture
+from cutis.textures.channels import ChannelFile, channel_writer, read_channels, write_channels
+from cutis.textures.mask import MaskFile, read_mask
+from cutis.textures.reading import TextureFile, read_texture
+from cutis.textures.spaces import colour_space
+from cutis.textures.texture import Texture, bands
+from cutis.textures.writing import format_of, texture_writer, write_texture
 
 __all__ = [
-    "Encoding",
+    "ChannelFile",
+    "MaskFile",
     "Texture",
+    "TextureFile",
+    "bands",
+    "channel_writer",
+    "colour_space",
     "format_of",
-    "out_of_range",
     "read_channels",
     "read_mask",
     "read_texture",
     "replacing",
+    "texture_writer",
     "write_channels",
     "write_texture",
 ]

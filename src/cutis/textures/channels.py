@@ -3,20 +3,24 @@
 OpenEXR sorts channels by name, so that a column number means nothing: names do.
 """
 
+import contextlib
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Literal
+from types import TracebackType
+from typing import Literal, Self
 
 import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import ArrayLike, NDArray
 
-from cutis.textures.decoding import decode
-from cutis.textures.encoding import encode
+from cutis.textures.decoding import Decoder
+from cutis.textures.encoding import encoder
 from cutis.textures.problem import problem
+from cutis.textures.texture import bands
 
 Metadata = dict[str, str | float | int]
+Value = str | float | int | tuple[float, ...]
 _INT = range(-(2**31), 2**31)
 # Attributes of the file rather than of its maker.
 _HOUSEKEEPING = ("oiio:", "openexr:", "screenwindow")
@@ -27,33 +31,45 @@ def write_channels(
     path: str | os.PathLike[str],
     channels: Mapping[str, ArrayLike],
     dtype: Literal["float", "half"] = "float",
-    metadata: Mapping[str, str | float | int] | None = None,
+    metadata: Mapping[str, Value] | None = None,
 ) -> None:
     """Write arrays (H, W), by name, as channels of one OpenEXR file (scanlines, ZIP).
 
-    `metadata` goes to the header: text, integers of 32 bits, and numbers, which OpenEXR keeps to
-    7 digits; empty text is not kept. Raises CutisError, one line that names the file, for arrays
-    of different sizes, values too large for `dtype`, another extension than .exr, a failed write.
+    `metadata` goes to the header: text, integers of 32 bits, numbers, which OpenEXR keeps to
+    7 digits, and tuples of eight numbers; empty text is not kept. Raises CutisError, one line that
+    names the file, for arrays of different sizes, values too large for `dtype`, another extension
+    than .exr, a failed write.
     """
-    path = Path(path)
-    if path.suffix.lower() != ".exr":
-        raise problem(path, "named channels need an OpenEXR file; end the name in .exr")
-    if dtype not in ("float", "half"):
-        raise problem(path, f"channels are stored as float or half, not {dtype}")
     arrays = {name: np.asarray(values) for name, values in channels.items()}
     shapes = {name: array.shape for name, array in arrays.items()}
     if len(set(shapes.values())) != 1 or any(a.ndim != 2 or not a.size for a in arrays.values()):
         listed = ", ".join(f"{name} {shape}" for name, shape in shapes.items()) or "none"
         raise problem(path, f"channels must be (H, W) arrays of one size, not {listed}")
-    height, width = next(iter(shapes.values()))
-    pixels = np.empty((height, width, len(arrays)), np.float32 if dtype == "float" else np.float16)
-    for column, (name, array) in enumerate(arrays.items()):
-        with np.errstate(over="ignore"):
-            pixels[..., column] = array
-        if np.isinf(pixels[..., column]).any() and not np.isinf(array).any():
-            raise problem(path, f"channel {name} has values too large for {dtype}; use float")
-    spec = oiio.ImageSpec(width, height, len(arrays), dtype)
-    spec.channelnames = tuple(arrays)
+    shape = next(iter(shapes.values()))
+    with channel_writer(path, tuple(arrays), shape, dtype, metadata) as write:
+        for rows in bands(shape):
+            write({name: array[rows] for name, array in arrays.items()})
+
+
+@contextlib.contextmanager
+def channel_writer(
+    path: str | os.PathLike[str],
+    names: Sequence[str],
+    shape: tuple[int, int],
+    dtype: Literal["float", "half"] = "float",
+    metadata: Mapping[str, Value] | None = None,
+) -> Iterator[Callable[[Mapping[str, NDArray[np.generic]]], None]]:
+    """What `write_channels` does, some rows at a time.
+
+    Yields a function that takes the next rows, top to bottom: arrays (h, W) by name.
+    """
+    path, (height, width) = Path(path), shape
+    if path.suffix.lower() != ".exr":
+        raise problem(path, "named channels need an OpenEXR file; end the name in .exr")
+    if dtype not in ("float", "half"):
+        raise problem(path, f"channels are stored as float or half, not {dtype}")
+    spec = oiio.ImageSpec(width, height, len(names), dtype)
+    spec.channelnames = tuple(names)
     spec.attribute("compression", "zip")
     metadata = metadata or {}
     if len({name.lower() for name in metadata}) < len(metadata):
@@ -61,28 +77,83 @@ def write_channels(
     for name, value in metadata.items():
         if _is_housekeeping(name):
             raise problem(path, f"metadata cannot be called {name}, OpenEXR uses it; rename it")
+        if isinstance(value, tuple):
+            spec.attribute(name, oiio.TypeDesc(f"float[{len(value)}]"), value)
+            continue
         if isinstance(value, int) and int(value) not in _INT:
             raise problem(path, f"metadata {name} = {value} exceeds 32 bits; give it as text")
         spec.attribute(name, int(value) if isinstance(value, int) else value)
-    encode(path, "openexr", spec, pixels)
+    kind = np.dtype(np.float32 if dtype == "float" else np.float16)
+
+    with encoder(path, "openexr", spec) as sink:
+
+        def write(part: Mapping[str, NDArray[np.generic]]) -> None:
+            rows = len(next(iter(part.values())))
+            pixels = np.empty((rows, width, len(names)), kind)
+            for column, name in enumerate(names):
+                with np.errstate(over="ignore"):
+                    pixels[..., column] = part[name]
+                if np.isinf(pixels[..., column]).any() and not np.isinf(part[name]).any():
+                    what = f"channel {name} has values too large for {dtype}; use float"
+                    raise problem(path, what)
+            sink.write(pixels)
+
+        yield write
+
+
+class ChannelFile:
+    """An open OpenEXR file of named channels (its first part), read some rows at a time.
+
+    `names` are its channels, `metadata` what its header says, as text or numbers; other metadata is
+    left out. Raises CutisError, one line that names the file, if it cannot be read or is no OpenEXR
+    file. Close it, or use it in a with block.
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        self.path = Path(path)
+        self._source = Decoder(self.path)
+        kind = self._source.file_format
+        if kind != "openexr":
+            self.close()
+            raise problem(path, f"is a {kind.upper()} file; named channels need OpenEXR")
+        self.shape = self._source.shape
+        self.names = tuple(self._source.spec.channelnames)
+        self.metadata = _metadata(self._source.spec)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Lets go of the file."""
+        self._source.close()
+
+    def bands(self) -> Iterator[slice]:
+        """Slices of rows that cover the file, of about half a million texels each."""
+        return bands(self.shape, self._source.step)
+
+    def rows(self, rows: slice) -> dict[str, NDArray[np.float32]]:
+        """Channels (h, W) by name, float32, of some rows."""
+        pixels = self._source.rows(rows)
+        return {
+            name: pixels[..., column].astype(np.float32, order="C")
+            for column, name in enumerate(self.names)
+        }
 
 
 def read_channels(path: str | os.PathLike[str]) -> tuple[dict[str, NDArray[np.float32]], Metadata]:
-    """Channels (H, W) by name, as float32, and metadata of an OpenEXR file (its first part).
+    """All channels (H, W) by name, and metadata; see `ChannelFile`."""
+    with ChannelFile(path) as file:
+        return file.rows(slice(None)), file.metadata
 
-    Metadata that is neither text (UTF-8) nor a number is left out. Raises CutisError, one line
-    that names the file, if it cannot be read or is no OpenEXR file.
-    """
-    path = Path(path)
-    decoded = decode(path)
-    if decoded.format != "openexr":
-        raise problem(path, f"is a {decoded.format.upper()} file; named channels need OpenEXR")
-    channels = {
-        name: decoded.pixels[..., column].astype(np.float32, order="C")
-        for column, name in enumerate(decoded.spec.channelnames)
-    }
-    metadata: Metadata = {}
-    for attribute in decoded.spec.extra_attribs:
+
+def _metadata(spec: oiio.ImageSpec) -> Metadata:
+    found: Metadata = {}
+    for attribute in spec.extra_attribs:
         try:
             value = attribute.value
         except UnicodeDecodeError:
@@ -90,8 +161,8 @@ def read_channels(path: str | os.PathLike[str]) -> tuple[dict[str, NDArray[np.fl
         if isinstance(value, str | int | float) and not _is_housekeeping(attribute.name):
             # The shortest decimal that is this float32: 0.1 comes back as 0.1.
             short = float(str(np.float32(value))) if isinstance(value, float) else value
-            metadata[attribute.name] = short
-    return channels, metadata
+            found[attribute.name] = short
+    return found
 
 
 def _is_housekeeping(name: str) -> bool:

@@ -1,8 +1,10 @@
-"""The one way in through OpenImageIO: stored values of any supported file, verbatim."""
+"""The one way in through OpenImageIO: stored values of any supported file, rows at a time."""
 
 import os
 from dataclasses import dataclass
 from pathlib import Path
+from types import TracebackType
+from typing import Self
 
 import numpy as np
 import OpenImageIO as oiio
@@ -23,6 +25,96 @@ _GREY_PHOTOMETRICS = (0, 1)
 _PALETTE = 3
 
 
+class Decoder:
+    """First image of an open file; `rows` gives stored values (h, W, C) of rows from top to bottom.
+
+    Values are uint8, uint16, float16 or float32. `step` is the number of rows that are stored
+    together: bands of rows that start at multiples of it are cheapest. Memory is that of the rows
+    asked for, except for formats whose decoders hold a whole image (interlaced PNG, PSD). Close it,
+    or use it in a with block.
+
+    Raises CutisError, in one line, for a file that is missing or not whole, too large, deep, CMYK,
+    or of a sample type that cannot be kept; what is not whole may show only at the rows concerned.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.file_format = image_format(path)
+        check_name(path)
+        hints = oiio.ImageSpec()
+        hints.attribute("oiio:UnassociatedAlpha", 1)  # leave alpha alone, however it is stored
+        source = oiio.ImageInput.open(str(path), hints)
+        if source is None:
+            raise _unreadable(path, pending_error())
+        self._source = source
+        try:
+            self.spec: oiio.ImageSpec = source.spec().copy()
+            "".join(self.spec.channelnames).encode()  # what is not UTF-8 comes as lone surrogates
+            self.stored_as = _check(path, self.spec)
+            self.step = self.spec.tile_height or int(
+                self.spec.get_int_attribute("oiio:RowsPerChunk", 1)
+            )
+        except UnicodeError as cause:
+            self.close()
+            raise problem(path, "is damaged: a name in it is not text; export it again") from cause
+        except BaseException:
+            self.close()
+            raise
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Lets go of the file; a second call does nothing."""
+        self._source.close()
+        pending_error(self._source)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Height and width in texels."""
+        return self.spec.height, self.spec.width
+
+    @property
+    def dtype(self) -> np.dtype[np.generic]:
+        """The type that rows come in."""
+        names = {"half": "float16", "float": "float32"}
+        return np.dtype(names.get(self.stored_as, self.stored_as))
+
+    def rows(self, rows: slice) -> NDArray[np.generic]:
+        """Stored values (h, W, C) of some rows."""
+        spec, source = self.spec, self._source
+        top, bottom, _ = rows.indices(spec.height)
+        left, right = spec.x, spec.x + spec.width
+        count = spec.nchannels
+        try:
+            if spec.tile_width:
+                first = top - top % spec.tile_height
+                last = min(spec.height, -(-bottom // spec.tile_height) * spec.tile_height)
+                pixels = source.read_tiles(
+                    left, right, spec.y + first, spec.y + last, spec.z, spec.z + 1, 0, count,
+                    self.stored_as,
+                )  # fmt: skip
+                if pixels is not None:
+                    shaped = np.asarray(pixels).reshape(last - first, spec.width, count)
+                    pixels = shaped[top - first : bottom - first]
+            else:
+                pixels = source.read_scanlines(
+                    spec.y + top, spec.y + bottom, 0, 0, count, self.stored_as
+                )
+            # JPEG gives a full array, grey where the data ended, and says so only here.
+            error = pending_error(source)
+        except UnicodeError as cause:
+            raise problem(self.path, "is damaged; copy or export it again") from cause
+        if pixels is None or error:
+            raise _unreadable(self.path, error)
+        return np.asarray(pixels).reshape(bottom - top, spec.width, count)
+
+
 @dataclass(frozen=True, eq=False)
 class Decoded:
     """`pixels` (H, W, C) as they are stored: uint8, uint16, float16 or float32."""
@@ -33,34 +125,10 @@ class Decoded:
 
 
 def decode(path: Path) -> Decoded:
-    """First image of a PNG, JPEG, TIFF or OpenEXR file.
-
-    Raises CutisError, in one line, for a file that is missing or not whole, too large, deep, CMYK,
-    or of a sample type that cannot be kept.
-    """
-    image_format(path)
-    check_name(path)
-    hints = oiio.ImageSpec()
-    hints.attribute("oiio:UnassociatedAlpha", 1)  # leave alpha alone, whichever way it is stored
-    source = oiio.ImageInput.open(str(path), hints)
-    if source is None:
-        raise _unreadable(path, pending_error())
-    try:
-        spec = source.spec()
-        "".join(spec.channelnames).encode()  # bytes that are not UTF-8 come as lone surrogates
-        stored_as = _check(path, spec)
-        pixels = source.read_image(0, 0, 0, spec.nchannels, stored_as)
-        # JPEG gives a full array, grey where the data ended, and says so only here.
-        error = pending_error(source)
-        if pixels is None or error:
-            raise _unreadable(path, error)
-        pixels = np.asarray(pixels).reshape(spec.height, spec.width, spec.nchannels)
-        return Decoded(pixels, spec.copy(), source.format_name())
-    except UnicodeError as cause:
-        raise problem(path, "is damaged: a name in it is not text; export it again") from cause
-    finally:
-        source.close()
-        pending_error(source)
+    """All of the first image of a file; see `Decoder`."""
+    with Decoder(path) as source:
+        check_memory(path, source.spec, source.stored_as)
+        return Decoded(source.rows(slice(None)), source.spec, source.file_format)
 
 
 def pending_error(source: oiio.ImageInput | oiio.ImageOutput | None = None) -> str:
@@ -85,19 +153,15 @@ def is_palette(spec: oiio.ImageSpec) -> bool:
     return photometric(spec) == _PALETTE
 
 
-def check_finite(path: Path, values: NDArray[np.generic]) -> None:
-    """Refuse NaN and infinity in `values` (H, W, C), naming how many texels and where the first."""
+def check_finite(path: Path, values: NDArray[np.generic], first_row: int = 0) -> None:
+    """Refuse NaN and infinity in `values` (h, W, C), naming how many texels and where the first."""
     if values.dtype.kind != "f":
         return
-    count, first = 0, (0, 0)
-    for top in range(0, len(values), 256):
-        bad = ~np.isfinite(values[top : top + 256]).all(axis=-1)
-        if bad.any() and not count:
-            row, column = np.argwhere(bad)[0]
-            first = (top + int(row), int(column))
-        count += int(np.count_nonzero(bad))
+    bad = ~np.isfinite(values).all(axis=-1)
+    count = int(np.count_nonzero(bad))
     if count:
-        where = f"the first at row {first[0]}, column {first[1]}"
+        row, column = np.argwhere(bad)[0]
+        where = f"the first at row {first_row + int(row)}, column {column}"
         texels = "1 texel is" if count == 1 else f"{count} texels are"
         raise problem(path, f"{texels} NaN or infinite, {where}; repair or repaint them")
 
@@ -110,22 +174,26 @@ def _check(path: Path, spec: oiio.ImageSpec) -> str:
     if spec.depth > 1:
         raise problem(path, f"is a volume of {spec.depth} slices; give a flat image")
     model = photometric(spec)
-    if model == 5 or spec.getattribute("jpeg:ColorSpace") in ("CMYK", "YCCK"):
+    kind = str(spec.getattribute("jpeg:ColorSpace") or spec.getattribute("psd:ColorMode") or "")
+    if model == 5 or kind in ("CMYK", "YCCK"):
         raise problem(path, "is CMYK, made for print; convert it to RGB")
     if model is not None and model not in (*_RGB_PHOTOMETRICS, *_GREY_PHOTOMETRICS, _PALETTE):
-        kind = spec.getattribute("tiff:ColorSpace") or f"photometric {model}"
+        kind = str(spec.getattribute("tiff:ColorSpace") or f"photometric {model}")
         raise problem(path, f"stores another colour model ({kind}); convert it to RGB")
     for kind in {str(t) for t in (spec.format, *spec.channelformats)}:
         if kind not in STORED_AS:
             what = f"has samples of type {kind}, which cannot be kept"
             raise problem(path, f"{what}; convert it to 8 or 16 bit integer, half or float")
-    stored_as = STORED_AS[str(spec.format)]
+    return STORED_AS[str(spec.format)]
+
+
+def check_memory(path: Path, spec: oiio.ImageSpec, stored_as: str) -> None:
+    """Refuse to hold an image that free memory has no room for."""
     need = spec.image_pixels() * spec.nchannels * oiio.TypeDesc(stored_as).size()
     free = available_memory()
     if free is not None and need > free:
         what = f"needs {need / 2**30:.1f} GiB of memory, {free / 2**30:.1f} GiB is free"
         raise problem(path, f"{what}; close other programs or split it into tiles")
-    return stored_as
 
 
 def available_memory() -> int | None:

@@ -19,38 +19,136 @@ from cutis.textures.problem import check_name, problem
 # libtiff is asked for an empty EXIF block and declines; the image is complete all the same.
 _HARMLESS = {"failed TIFFWriteCustomDirectory() of the Exif data"}
 
+Pixels = NDArray[np.generic]
 
-def encode(path: Path, file_format: str, spec: oiio.ImageSpec, pixels: NDArray[np.generic]) -> None:
-    """Write `pixels` (H, W, C) as `spec` says in "png", "jpeg", "tiff" or "openexr".
+
+def encode(path: Path, file_format: str, spec: oiio.ImageSpec, pixels: Pixels) -> None:
+    """Write `pixels` (H, W, C) as `spec` says in a format of `headers.SIGNATURES`, or "tx".
 
     Raises CutisError, one line that names the file, and leaves `path` as it was.
+    """
+    with encoder(path, file_format, spec) as sink:
+        sink.write(pixels)
+
+
+@contextlib.contextmanager
+def encoder(path: Path, file_format: str, spec: oiio.ImageSpec) -> Iterator["Encoder"]:
+    """An `Encoder` of `path`, which gets its final name when the block ends well.
+
+    "tx" makes a tiled texture with all MIP levels of what is written.
     """
     check_name(path)
     with replacing(path) as temporary:
         if file_format == "jpeg":
             with _memory(path, spec) as (name, descriptor):
-                _encode(path, name or str(temporary), file_format, spec, pixels)
+                with Encoder(path, name or str(temporary), file_format, spec) as sink:
+                    yield sink
                 if descriptor is not None:
                     with open(descriptor, "rb", closefd=False) as held, open(temporary, "wb") as f:
                         held.seek(0)
                         shutil.copyfileobj(held, f, 1 << 20)
+        elif file_format == "tx":
+            base = temporary.with_suffix(".base.tif")
+            try:
+                with Encoder(path, str(base), "tiff", spec) as sink:
+                    yield sink
+                _make_texture(path, base, temporary, spec)
+            finally:
+                base.unlink(missing_ok=True)
         else:
-            _encode(path, str(temporary), file_format, spec, pixels)
+            with Encoder(path, str(temporary), file_format, spec) as sink:
+                yield sink
         _check_whole(path, temporary, file_format)
 
 
-def _encode(
-    path: Path, name: str, file_format: str, spec: oiio.ImageSpec, pixels: NDArray[np.generic]
-) -> None:
-    sink = oiio.ImageOutput.create(file_format)
-    if sink is None:
-        raise _failed(path, pending_error())
-    opened = sink.open(name, spec)  # writing after a failed open ends the process
-    good = opened and sink.write_image(np.ascontiguousarray(pixels))
-    good = sink.close() and good
-    error = pending_error(sink)
-    # PNG returns True on a full disk and tells only here.
-    if not good or (error and error not in _HARMLESS):
+class Encoder:
+    """An image file in the making; `write` takes its rows from top to bottom."""
+
+    def __init__(self, path: Path, name: str, file_format: str, spec: oiio.ImageSpec) -> None:
+        """Opens `name`; complaints name `path`."""
+        self._path, self._spec, self._row = path, spec, 0
+        self._waiting: list[Pixels] = []  # rows that do not fill a row of tiles yet
+        sink = oiio.ImageOutput.create(file_format)
+        if sink is None:
+            raise _failed(path, pending_error())
+        # Writing after a failed open ends the process.
+        if not sink.open(name, spec):
+            raise _failed(path, pending_error(sink))
+        self._sink = sink
+
+    def __enter__(self) -> "Encoder":
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        if kind is not None:
+            self._abandon()
+            return
+        self._flush(last=True)
+        good = self._sink.close()
+        error = pending_error(self._sink)
+        # PNG returns True on a full disk and tells only here.
+        if not good or (error and error not in _HARMLESS):
+            raise _failed(self._path, error)
+        if self._row != self._spec.height:
+            raise _failed(self._path, f"{self._row} of {self._spec.height} rows came")
+
+    def _abandon(self) -> None:
+        """Closes a file that nobody will see. PNG complains on the terminal unless it is whole."""
+        spec = self._spec
+        blank = np.zeros((64, spec.width, spec.nchannels), np.uint8)
+        good = self._sink.format_name() == "png"
+        while good and self._row < spec.height:
+            count = min(len(blank), spec.height - self._row)
+            top = spec.y + self._row
+            good = self._sink.write_scanlines(top, top + count, spec.z, blank[:count])
+            self._row += count
+        self._sink.close()
+        pending_error(self._sink)
+
+    def write(self, pixels: Pixels) -> None:
+        """The next rows (h, W, C)."""
+        if not self._spec.tile_height:
+            self._put(pixels)
+            return
+        self._waiting.append(pixels)
+        if sum(len(part) for part in self._waiting) >= self._spec.tile_height:
+            self._flush()
+
+    def _flush(self, last: bool = False) -> None:
+        if not self._waiting:
+            return
+        rows = np.concatenate(self._waiting) if len(self._waiting) > 1 else self._waiting[0]
+        whole = len(rows) if last else len(rows) - len(rows) % self._spec.tile_height
+        self._waiting = [rows[whole:]] if whole < len(rows) else []
+        if whole:
+            self._put(rows[:whole])
+
+    def _put(self, pixels: Pixels) -> None:
+        spec, pixels = self._spec, np.ascontiguousarray(pixels)
+        top, bottom = spec.y + self._row, spec.y + self._row + len(pixels)
+        if spec.tile_height:
+            good = self._sink.write_tiles(
+                spec.x, spec.x + spec.width, top, bottom, spec.z, spec.z + 1, pixels
+            )
+        else:
+            good = self._sink.write_scanlines(top, bottom, spec.z, pixels)
+        if not good:
+            error = pending_error(self._sink)
+            raise _failed(self._path, error)
+        self._row += len(pixels)
+
+
+def _make_texture(path: Path, base: Path, target: Path, spec: oiio.ImageSpec) -> None:
+    """Tiles and MIP levels of the image in `base`, as renderers look textures up."""
+    how = oiio.ImageSpec()
+    how.set_format(spec.format)
+    how.tile_width = how.tile_height = 64
+    how.attribute("maketx:fileformatname", "tiff")
+    how.attribute("compression", "zip")
+    image = oiio.ImageBuf(str(base))
+    good = oiio.ImageBufAlgo.make_texture(oiio.MakeTxTexture, image, str(target), how)
+    error = pending_error()
+    if not good:
         raise _failed(path, error)
 
 
@@ -63,7 +161,19 @@ def _check_whole(path: Path, temporary: Path, file_format: str) -> None:
             raise _failed(path, "the file came out incomplete") from cause
     elif file_format == "openexr":
         source = oiio.ImageInput.open(str(temporary))
-        whole = source is not None and source.read_image(source.spec().format) is not None
+        whole = source is not None
+        if source is not None:
+            spec = source.spec()
+            last = spec.y + spec.height
+            if spec.tile_height:
+                last_row = (spec.height - 1) // spec.tile_height * spec.tile_height
+                tiles = source.read_tiles(
+                    spec.x, spec.x + spec.width, spec.y + last_row, last, spec.z, spec.z + 1,
+                    0, 1, spec.format,
+                )  # fmt: skip
+                whole = tiles is not None
+            else:
+                whole = source.read_scanlines(last - 1, last, 0, 0, 1, spec.format) is not None
         if pending_error(source) or not whole:
             raise _failed(path, "the file came out incomplete")
 

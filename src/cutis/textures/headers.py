@@ -21,14 +21,19 @@ SIGNATURES = (
     (b"II+\0", "tiff"),  # BigTIFF
     (b"MM\0+", "tiff"),
     (b"v/1\x01", "openexr"),
+    (b"SDPX", "dpx"),
+    (b"XPDS", "dpx"),
+    (b"8BPS", "psd"),
 )
+EXTENSIONS = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".tx", ".exr", ".dpx", ".psd")
+"""What files of these formats are usually called, lower case."""
 PNG_PALETTE = 3
 LARGEST = 32768  # texels along a side
 _PIECE = 1 << 20
 
 
 def image_format(path: Path) -> str:
-    """OpenImageIO's name of the format ("png", "jpeg", "tiff", "openexr"), by content.
+    """OpenImageIO's name of the format (a second column of SIGNATURES), by content.
 
     Raises CutisError for a file that is missing, unreadable, empty, truncated or of another format.
     """
@@ -52,7 +57,7 @@ def image_format(path: Path) -> str:
     if not start:
         raise problem(path, "is empty (0 bytes); export it again")
     if found is None:
-        raise problem(path, "is not a PNG, JPEG, TIFF or OpenEXR image; convert it to one of these")
+        raise problem(path, "is not a PNG, JPEG, TIFF, OpenEXR, DPX or PSD image; convert it")
     return found
 
 

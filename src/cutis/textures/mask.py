@@ -2,16 +2,72 @@
 
 import os
 from pathlib import Path
+from types import TracebackType
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cutis.textures.decoding import check_finite, decode
+from cutis.errors import CutisError
+from cutis.textures.decoding import Decoder, check_finite
 from cutis.textures.problem import problem
 from cutis.textures.texture import bands, colour_channels, to_unit
 
-BLACK = 0.02
-"""What JPEG may make of black: a mask that is nowhere lighter is empty."""
+
+class MaskFile:
+    """An open mask, read some rows at a time; see `read_mask`, also for errors."""
+
+    BLACK = 0.02
+    """What JPEG may make of black: a mask that is nowhere lighter is empty."""
+
+    def __init__(self, path: str | os.PathLike[str], shape: tuple[int, int]) -> None:
+        self.path, self.shape = Path(path), shape
+        self._source = Decoder(self.path)
+        try:
+            self._columns = self._found()
+        except BaseException:
+            self.close()
+            raise
+
+    def _found(self) -> list[int]:
+        path, shape = self.path, self._source.shape
+        if shape != tuple(self.shape):
+            theirs, ours = (f"{width} × {height}" for height, width in (shape, self.shape))
+            raise problem(path, f"the mask has {theirs} texels, the texture {ours}; resize it")
+        names = [name.lower() for name in self._source.spec.channelnames]
+        if "mask" in names:
+            return [names.index("mask")]
+        if len(names) < 3:
+            return [0]
+        try:
+            return colour_channels(names)[0]
+        except ValueError as error:
+            raise problem(path, f"as a mask: {error}, or a channel called mask") from error
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Lets go of the file."""
+        self._source.close()
+
+    def rows(self, rows: slice) -> NDArray[np.float32]:
+        """Values (h, W) in [0, 1] of some rows."""
+        pixels = self._source.rows(rows)
+        for column in self._columns:
+            check_finite(
+                self.path, pixels[..., column : column + 1], rows.indices(self.shape[0])[0]
+            )
+        return to_unit(pixels[..., self._columns]).mean(axis=-1).clip(0, 1)
+
+    def empty(self) -> CutisError:
+        """What to raise when no value was above BLACK."""
+        return problem(self.path, "the mask is empty: all of it is black; paint white what counts")
 
 
 def read_mask(path: str | os.PathLike[str], shape: tuple[int, int]) -> NDArray[np.float32]:
@@ -21,26 +77,10 @@ def read_mask(path: str | os.PathLike[str], shape: tuple[int, int]) -> NDArray[n
     channels, the first. Stored values count as they are, over 255 or 65535 for integers, without
     a transfer function. Raises CutisError if the file is unreadable, of another size, or black.
     """
-    path = Path(path)
-    pixels, spec = (decoded := decode(path)).pixels, decoded.spec
-    if pixels.shape[:2] != tuple(shape):
-        theirs, ours = (f"{width} × {height}" for height, width in (pixels.shape[:2], shape))
-        raise problem(path, f"the mask has {theirs} texels, the texture {ours}; resize the mask")
-    names = [name.lower() for name in spec.channelnames]
-    if "mask" in names:
-        columns = [names.index("mask")]
-    elif len(names) < 3:
-        columns = [0]
-    else:
-        try:
-            columns, _ = colour_channels(names)
-        except ValueError as error:
-            raise problem(path, f"as a mask: {error}, or a channel called mask") from error
-    for column in columns:
-        check_finite(path, pixels[..., column : column + 1])
-    mask = np.empty(shape, np.float32)
-    for rows in bands(shape):
-        mask[rows] = to_unit(pixels[rows][..., columns]).mean(axis=-1).clip(0, 1)
-    if not (mask > BLACK).any():
-        raise problem(path, "the mask is empty: all of it is black; paint white what counts")
+    with MaskFile(path, shape) as file:
+        mask = np.empty(shape, np.float32)
+        for rows in bands(shape):
+            mask[rows] = file.rows(rows)
+        if not (mask > MaskFile.BLACK).any():
+            raise file.empty()
     return mask

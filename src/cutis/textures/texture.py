@@ -4,16 +4,15 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
-from typing import Literal, get_args
 
 import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import ArrayLike, NDArray
 
-from cutis.colour.transfer import decode_srgb, encode_srgb
+from cutis.colour.spaces import RGBSpace, Space
+from cutis.colour.transfer import decode_srgb
 from cutis.errors import CutisError
 
-Encoding = Literal["srgb", "linear"]
 STORED_TYPES = ("uint8", "uint16", "float16", "float32")
 _BAND = 1 << 19  # texels at a time: about 50 MB of temporaries
 _LARGEST = {"uint8": np.float32(255), "uint16": np.float32(65535)}
@@ -25,7 +24,8 @@ class Texture:
     """Stored values of an RGB image and what is needed to read them as colour.
 
     `pixels` (H, W, C) is uint8, uint16, float16 or float32; `channels` names the C columns, among
-    them one set of R, G, B, found by name (`diffuse.R` counts where it is the only set). `spec`
+    them one set of R, G, B, found by name (`diffuse.R` counts where it is the only set). `space` is
+    the colour space of the stored values and `origin` says in words how it is known. `spec`
     holds the metadata of the file it came from and `format` OpenImageIO's name of that format.
     `associated` says that stored colour is multiplied by alpha. Raises CutisError if these do not
     fit together.
@@ -33,11 +33,12 @@ class Texture:
 
     pixels: NDArray[np.generic]
     channels: tuple[str, ...]
-    encoding: Encoding
+    space: Space
     path: Path | None = None
     spec: oiio.ImageSpec | None = None
     format: str | None = None
     associated: bool = False
+    origin: str = "given"
 
     def __post_init__(self) -> None:
         if self.pixels.ndim != 3 or self.pixels.shape[2] != len(self.channels):
@@ -46,8 +47,6 @@ class Texture:
         if self.pixels.dtype.name not in STORED_TYPES:
             types = ", ".join(STORED_TYPES)
             raise CutisError(f"pixels must be one of {types}, not {self.pixels.dtype}")
-        if self.encoding not in get_args(Encoding):
-            raise CutisError(f"encoding must be 'srgb' or 'linear', not {self.encoding!r}")
         colour_channels(self.channels)
 
     @property
@@ -55,24 +54,30 @@ class Texture:
         """Height and width in texels."""
         return self.pixels.shape[0], self.pixels.shape[1]
 
+    def rows(self, rows: slice) -> "Texture":
+        """The texture of some rows only."""
+        return replace(self, pixels=self.pixels[rows])
+
     def linear(self) -> NDArray[np.float32]:
         """Colour (H, W, 3), linear sRGB, straight (not multiplied by alpha), not clamped."""
         colour = np.empty((*self.shape, 3), np.float32)
         for rows in bands(self.shape):
-            colour[rows] = self.linear_rows(rows)
+            colour[rows] = self.rows(rows)._linear()
         return colour
 
-    def linear_rows(self, rows: slice) -> NDArray[np.float32]:
-        """The same for some rows only."""
+    def _linear(self) -> NDArray[np.float32]:
         rgb, _ = colour_channels(self.channels)
-        stored = self.pixels[rows][..., rgb]
-        if stored.dtype.kind == "u" and not self.associated:
-            return _decoding_table(stored.dtype.name, self.encoding)[stored]
+        stored = self.pixels[..., rgb]
+        ours = isinstance(self.space, RGBSpace)
+        if stored.dtype.kind == "u" and not self.associated and ours:
+            assert isinstance(self.space, RGBSpace)
+            linear = _decoding_table(stored.dtype.name, self.space.encoded)[stored]
+            return self.space.primaries_to_srgb(linear).astype(np.float32, copy=False)
         values = to_unit(stored)
-        alpha = self._factor(rows)
+        alpha = self._factor()
         if alpha is not None:
             values /= alpha[..., None]
-        return decode_srgb(values) if self.encoding == "srgb" else values
+        return self.space.to_linear_srgb(values).astype(np.float32, copy=False)
 
     def alpha(self) -> NDArray[np.float32] | None:
         """Opacity (H, W), 1 is opaque; None without an alpha channel."""
@@ -97,18 +102,18 @@ class Texture:
         for rows in bands(self.shape):
             inside = chosen[rows]
             if inside.any():
-                alpha = self._factor(rows)
+                alpha = self.rows(rows)._factor()
                 new = self._encoded(colour[rows][inside], None if alpha is None else alpha[inside])
                 for column, values in zip(columns, new.T, strict=True):
                     pixels[rows, :, column][inside] = values
         return replace(self, pixels=pixels)
 
-    def _factor(self, rows: slice) -> NDArray[np.float32] | None:
+    def _factor(self) -> NDArray[np.float32] | None:
         """What stored colour was multiplied by, 1 where it is transparent; None if it was not."""
         _, column = colour_channels(self.channels)
         if column is None or not self.associated:
             return None
-        alpha = to_unit(self.pixels[rows][..., column])
+        alpha = to_unit(self.pixels[..., column])
         return np.where(np.abs(alpha) > _TRANSPARENT, alpha, np.float32(1))
 
     def _encoded(
@@ -119,28 +124,19 @@ class Texture:
             values = colour.astype(np.float32)
         if not np.isfinite(values).all():
             raise CutisError("some of the new colours are NaN or infinite; mask them out")
-        if self.encoding == "srgb":
-            values = encode_srgb(values)
+        values = self.space.from_linear_srgb(values).astype(np.float32, copy=False)
         if alpha is not None:
             values *= alpha[:, None]
         return from_unit(values, self.pixels.dtype)
 
 
-def out_of_range(texture: Texture) -> tuple[int, int]:
-    """How many texels have a linear colour with a component below 0, and how many above 1."""
-    negative = above = 0
-    if texture.pixels.dtype.kind == "u" and not texture.associated:
-        return 0, 0
-    for rows in bands(texture.shape):
-        colour = texture.linear_rows(rows)
-        negative += int(np.count_nonzero(colour.min(axis=-1) < 0))
-        above += int(np.count_nonzero(colour.max(axis=-1) > 1))
-    return negative, above
+def bands(shape: tuple[int, int], chunk: int = 1) -> Iterator[slice]:
+    """Slices of rows that cover an image of `shape` (H, W), each about half a million texels.
 
-
-def bands(shape: tuple[int, int]) -> Iterator[slice]:
-    """Slices of rows that cover an image of `shape` (H, W), each about half a million texels."""
+    All but the last hold a multiple of `chunk` rows, which files keep together.
+    """
     step = max(1, _BAND // max(1, shape[1]))
+    step = max(chunk, step - step % chunk)
     for top in range(0, shape[0], step):
         yield slice(top, top + step)
 
@@ -188,9 +184,9 @@ def from_unit(values: NDArray[np.float32], dtype: np.dtype[np.generic]) -> NDArr
 
 
 @cache
-def _decoding_table(dtype: str, encoding: Encoding) -> NDArray[np.float32]:
+def _decoding_table(dtype: str, encoded: bool) -> NDArray[np.float32]:
     """Linear value of each integer code, correctly rounded."""
     fractions = np.arange(np.iinfo(dtype).max + 1) / np.iinfo(dtype).max
-    table = (decode_srgb(fractions) if encoding == "srgb" else fractions).astype(np.float32)
+    table = (decode_srgb(fractions) if encoded else fractions).astype(np.float32)
     table.flags.writeable = False
     return table

@@ -1,16 +1,21 @@
-"""Textures to PNG, JPEG, TIFF and OpenEXR files."""
+"""Textures to image files, whole or some rows at a time."""
 
+import contextlib
 import os
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
 
-from cutis.textures.encoding import encode
+from cutis.colour.spaces import Space
+from cutis.textures.encoding import Encoder, encoder
 from cutis.textures.problem import problem
-from cutis.textures.texture import Encoding, Texture, bands, colour_channels, from_unit, to_unit
+from cutis.textures.spaces import sibling
+from cutis.textures.texture import Texture, bands, colour_channels, from_unit, to_unit
 
 FORMATS = {
     ".png": "png",
@@ -19,6 +24,8 @@ FORMATS = {
     ".tif": "tiff",
     ".tiff": "tiff",
     ".exr": "openexr",
+    ".tx": "tx",
+    ".dpx": "dpx",
 }
 # What each format stores a type as, and how many channels it takes.
 _STORED_AS = {
@@ -26,27 +33,56 @@ _STORED_AS = {
     "jpeg": {"uint16": "uint8", "float16": "uint8", "float32": "uint8"},
     "tiff": {"float16": "float32"},
     "openexr": {"uint8": "float16", "uint16": "float32"},
+    "tx": {},
+    "dpx": {"float16": "uint16", "float32": "uint16"},
 }
-_MOST_CHANNELS = {"png": 4, "jpeg": 3}
+_MOST_CHANNELS = {"png": 4, "jpeg": 3, "dpx": 4}
 # Other compressions would change texels that nobody touched, or are not in every build.
 _LOSSLESS = {
     "tiff": {"none", "lzw", "zip", "packbits"},
     "openexr": {"none", "rle", "zip", "zips", "piz"},
 }
-# Metadata that means nothing outside the format it came from.
-_PRIVATE = r"(tiff|png|jpeg|openexr|oiio):.*|compression|planarconfig|name|screenWindow.*"
+# Metadata that means nothing outside the format it came from, as OpenImageIO takes patterns: one by
+# one, since it knows no alternatives.
+_PRIVATE = (
+    *(f"{name}:.*" for name in ("tiff", "png", "jpeg", "openexr", "oiio", "dpx", "psd")),
+    *("compression", "planarconfig", "name", "screenWindow.*"),
+    *("textureformat", "wrapmodes", "fovcot", "thumbnail.*"),
+)
+# What says which space the colours are in.
+_SPACE = (
+    *("ICCProfile", "ICCProfile:.*", "chromaticities", "colorInteropID", "oiio:ColorSpace"),
+    *("dpx:Transfer", "dpx:Colorimetric"),
+)
 
 
-def write_texture(texture: Texture, path: str | os.PathLike[str]) -> None:
+class Source(Protocol):
+    """A texture in memory or in a file."""
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Height and width in texels."""
+
+    def rows(self, rows: slice) -> Texture:
+        """The texture of some rows."""
+
+
+def write_texture(
+    texture: Texture, path: str | os.PathLike[str], space: Space | None = None
+) -> None:
     """Write a texture in the format that the extension names, with its metadata.
 
     Written back in the format it came from, a texture keeps its stored values bit for bit (JPEG
-    aside, which is lossy), its channels, type, compression where lossless, and metadata. Else:
+    aside, which is lossy), its channels, type, compression where lossless, tiles, and metadata.
+    Else:
 
-    * PNG takes float as 16 bit sRGB, JPEG everything as 8 bit at quality 98, TIFF float16 as
+    * PNG and DPX take float as 16 bit sRGB, JPEG everything as 8 bit at quality 98, TIFF float16 as
       float32, OpenEXR uint8 as half and uint16 as float, both made linear and associated;
-    * PNG keeps only R, G, B and A, JPEG only R, G, B;
-    * an ICC profile is kept where the encoding is (OpenEXR holds none).
+    * PNG and DPX keep only R, G, B and A, JPEG only R, G, B;
+    * .tx is a TIFF of 64 × 64 tiles with all MIP levels, for renderers;
+    * an ICC profile is kept where the colour space is (OpenEXR holds none, but chromaticities).
+
+    `space` is the colour space to write; by default that of the texture, linear in OpenEXR.
 
     Of an OpenEXR file of several parts only the first was read, so only that is written. EXIF of
     the camera survives in JPEG and PNG, not in TIFF, where OpenImageIO does not reach it.
@@ -54,10 +90,37 @@ def write_texture(texture: Texture, path: str | os.PathLike[str]) -> None:
     Raises CutisError, one line that names the file, for an unknown extension or a failed write;
     a file that was there is then untouched.
     """
+    with texture_writer(path, texture, space) as writer:
+        for rows in bands(texture.shape):
+            writer.write(texture.rows(rows))
+
+
+class TextureWriter:
+    """A texture file in the making; see `texture_writer`."""
+
+    def __init__(self, sink: Encoder, file_format: str, space: Space | None) -> None:
+        self._sink, self._format, self._space = sink, file_format, space
+
+    def write(self, part: Texture) -> None:
+        """The next rows, from top to bottom."""
+        self._sink.write(_fitted(part, self._format, self._space).pixels)
+
+
+@contextlib.contextmanager
+def texture_writer(
+    path: str | os.PathLike[str], like: Source, space: Space | None = None
+) -> Iterator[TextureWriter]:
+    """A writer of rows like those of `like`, as `write_texture` writes them.
+
+    The file has its final name when the block ends well; else nothing is left of it. Raises as
+    `write_texture` does.
+    """
     path = Path(path)
     file_format = format_of(path)
-    fitted = _fitted(texture, file_format)
-    encode(path, file_format, _spec(texture, fitted, file_format), fitted.pixels)
+    blank = like.rows(slice(0, 0))
+    spec = _spec(blank, _fitted(blank, file_format, space), file_format, like.shape[0])
+    with encoder(path, file_format, spec) as sink:
+        yield TextureWriter(sink, file_format, space)
 
 
 def format_of(path: Path) -> str:
@@ -75,25 +138,25 @@ def format_of(path: Path) -> str:
     return file_format
 
 
-def _fitted(texture: Texture, file_format: str) -> Texture:
+def _fitted(texture: Texture, file_format: str, wanted: Space | None) -> Texture:
     """The texture as `file_format` can store it; the same one where nothing needs to change."""
     old = texture.pixels.dtype
     dtype = np.dtype(_STORED_AS[file_format].get(old.name, old.name))
-    encoding: Encoding = texture.encoding
-    if dtype.kind != old.kind:
-        encoding = "linear" if dtype.kind == "f" else "srgb"
+    space = wanted or texture.space
+    if wanted is None and dtype.kind != old.kind:
+        space = sibling(space, dtype.kind != "f")
     if file_format != texture.format:
         texture = _arranged(texture, _MOST_CHANNELS.get(file_format))
     _, alpha = colour_channels(texture.channels)
     associated = alpha is not None and (
-        file_format == "openexr" or (file_format == "tiff" and texture.associated)
+        file_format == "openexr" or (file_format in ("tiff", "tx") and texture.associated)
     )
-    if (dtype, encoding, associated) == (old, texture.encoding, texture.associated):
+    if (dtype, space, associated) == (old, texture.space, texture.associated):
         return texture
     pixels = np.empty(texture.pixels.shape, dtype)
     for rows in bands(texture.shape):
         pixels[rows] = from_unit(to_unit(texture.pixels[rows]), dtype)
-    blank = Texture(pixels, texture.channels, encoding, associated=associated)
+    blank = Texture(pixels, texture.channels, space, associated=associated)
     return blank.with_linear(texture.linear(), np.ones(texture.shape, bool))
 
 
@@ -113,12 +176,12 @@ def _arranged(texture: Texture, most: int | None) -> Texture:
     return out if colour is None else out.with_linear(colour, np.ones(out.shape, bool))
 
 
-def _spec(source: Texture, fitted: Texture, file_format: str) -> oiio.ImageSpec:
+def _spec(source: Texture, fitted: Texture, file_format: str, height: int) -> oiio.ImageSpec:
     """The header: that of the source as far as it fits the format."""
     spec = oiio.ImageSpec() if source.spec is None else source.spec.copy()
     same_format = source.spec is not None and source.format == file_format
     mixed = spec.channelformats if same_format else ()
-    (height, width), count = fitted.shape, len(fitted.channels)
+    width, count = fitted.shape[1], len(fitted.channels)
     if (spec.width, spec.height) != (width, height) or not same_format:
         spec.x = spec.y = spec.full_x = spec.full_y = 0
         spec.full_width, spec.full_height = width, height
@@ -133,11 +196,16 @@ def _spec(source: Texture, fitted: Texture, file_format: str) -> oiio.ImageSpec:
     spec.alpha_channel = names.index("a") if "a" in names else -1
     spec.z_channel = names.index("z") if "z" in names else -1
     if not same_format:
-        spec.erase_attribute(_PRIVATE)
-    if fitted.encoding != source.encoding:
-        spec.erase_attribute(r"ICCProfile.*")
-    for gone in ("oiio:UnassociatedAlpha", "oiio:BitsPerSample", "oiio:subimages"):
-        spec.erase_attribute(gone)
+        _erase(spec, _PRIVATE)
+    if fitted.space != source.space:
+        _erase(spec, _SPACE)
+    known = fitted.space.chromaticities
+    untold = same_format and fitted.space == source.space and source.origin.startswith("assumed")
+    if file_format == "openexr" and known is not None and not untold:
+        spec.attribute("chromaticities", oiio.TypeDesc("float[8]"), known)
+    _erase(spec, ("oiio:UnassociatedAlpha", "oiio:subimages"))
+    if not same_format or fitted.pixels.dtype != source.pixels.dtype:
+        _erase(spec, ("oiio:BitsPerSample",))
     if spec.alpha_channel >= 0 and not fitted.associated:
         spec.attribute("oiio:UnassociatedAlpha", 1)
     if file_format in _LOSSLESS and spec.getattribute("compression") not in _LOSSLESS[file_format]:
@@ -147,6 +215,11 @@ def _spec(source: Texture, fitted: Texture, file_format: str) -> oiio.ImageSpec:
         if not same_format:
             spec.attribute("jpeg:subsampling", "4:4:4")
     return spec
+
+
+def _erase(spec: oiio.ImageSpec, names: tuple[str, ...]) -> None:
+    for name in names:
+        spec.erase_attribute(name)
 
 
 def _type_name(pixels: NDArray[np.generic]) -> str:

@@ -1,0 +1,95 @@
+"""What `cutis estimate` is given: files, folders, patterns and UDIM sets."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from cutis.errors import CutisError
+from cutis.textures.headers import EXTENSIONS
+from cutis.textures.udim import TOKEN, missing_tiles, tile_of, udim_pattern, udim_tiles
+
+Set = tuple[Path, ...]
+"""Captures that share one calibration."""
+RESULTS = (".skin.exr", ".model.exr")
+"""Ends of names that are results, not captures."""
+
+
+def capture_sets(words: Sequence[str], udim: bool, sequence: bool) -> list[Set]:
+    """The captures that the words on the command line mean, in sets.
+
+    A word is a file, NAME.<UDIM>.EXT, a folder, or, after a folder, a pattern such as '*.exr'.
+    Tiles of a UDIM texture make one set: those of NAME.<UDIM>.EXT, of NAME.1001.EXT with `udim`,
+    and those found side by side in a folder. With `sequence` all captures are one set. Raises
+    CutisError where nothing is found.
+    """
+    sets: list[Set] = []
+    words = list(words)
+    while words:
+        path = Path(words.pop(0))
+        if path.is_dir():
+            pattern = words.pop(0) if words and any(c in words[0] for c in "*?[") else None
+            sets += _in_folder(path, pattern)
+        elif TOKEN in path.name:
+            sets.append(tuple(udim_tiles(path).values()))
+        elif udim:
+            sets.append(_whole_set(path))
+        else:
+            sets.append((path,))
+    if sequence:
+        sets = [tuple(path for one in sets for path in one)]
+    seen: set[str] = set()
+    for one in sets:
+        for path in one:
+            if path.stem in seen:
+                raise CutisError(
+                    f"{path}: another capture is called {path.stem} too, and results would "
+                    "overwrite each other; estimate them into different folders"
+                )
+            seen.add(path.stem)
+    return sets
+
+
+def _whole_set(path: Path) -> Set:
+    pattern = udim_pattern(path)
+    if pattern is None:
+        raise CutisError(f"{path}: with --udim a tile's name ends like face.1001.exr; rename it")
+    return tuple(udim_tiles(pattern).values())
+
+
+def _in_folder(folder: Path, pattern: str | None) -> list[Set]:
+    found = [
+        path
+        for path in sorted(folder.glob(pattern or "*"))
+        if path.is_file()
+        and not path.name.startswith(".")
+        and not path.name.endswith(RESULTS)
+        and (pattern is not None or path.suffix.lower() in EXTENSIONS)
+    ]
+    if not found:
+        what = f"no file matches {pattern}" if pattern else "there is no image"
+        raise CutisError(f"{folder}: {what} in this folder; check the name")
+    groups: dict[Path, list[Path]] = {}
+    for path in found:
+        groups.setdefault(udim_pattern(path) or path, []).append(path)
+    return [tuple(group) for group in groups.values()]
+
+
+def gaps(captures: Set) -> list[str]:
+    """Names of tiles that are missing between others of a row of a UDIM set."""
+    patterns = {udim_pattern(path) for path in captures}
+    pattern = patterns.pop() if len(patterns) == 1 else None
+    if pattern is None or len(captures) < 2:
+        return []
+    head = len(pattern.name.partition(TOKEN)[0])
+    numbers = [int(path.name[head : head + 4]) for path in captures]
+    return [tile_of(pattern, number).name for number in missing_tiles(numbers)]
+
+
+def companion(path: Path | None, capture: Path) -> Path | None:
+    """The mask that belongs to a capture: one file for all, or MASK.<UDIM>.EXT tile by tile."""
+    if path is None or TOKEN not in path.name:
+        return path
+    pattern = udim_pattern(capture)
+    if pattern is None:
+        raise CutisError(f"{path}: {capture.name} is no UDIM tile that a mask could belong to")
+    head = len(pattern.name.partition(TOKEN)[0])
+    return tile_of(path, int(capture.name[head : head + 4]))

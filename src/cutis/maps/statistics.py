@@ -1,0 +1,99 @@
+"""Distributions of maps that come in pieces: histograms fine enough to read percentiles from."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cutis.optics import NAMES, PARAMETERS, from_coordinates, to_coordinates
+
+BINS = 1 << 16
+"""Bins over the network coordinate of a map: a percentile is found to 1/131072 of its
+range."""
+SHOWN = 64
+"""Bars of the histogram that people see."""
+
+
+class Histogram:
+    """Counts of numbers in BINS even bins from `low` to `high`; those beyond count as the ends."""
+
+    def __init__(self, low: float, high: float) -> None:
+        self._low, self._high = low, high
+        self._counts = np.zeros(BINS, dtype=np.int64)
+        self._sum = 0.0
+
+    @property
+    def count(self) -> int:
+        """How many numbers came."""
+        return int(self._counts.sum())
+
+    def add(self, values: NDArray[np.floating]) -> None:
+        """Counts values (n,)."""
+        scale = BINS / (self._high - self._low)
+        places = np.clip(((values - self._low) * scale).astype(np.int64), 0, BINS - 1)
+        self._counts += np.bincount(places, minlength=BINS)
+        self._sum += float(values.sum(dtype=np.float64))
+
+    def mean(self) -> float:
+        """Their mean, exactly."""
+        return self._sum / self.count
+
+    def percentile(self, share: float) -> float:
+        """The value below which this share of them lies, to a bin's width."""
+        place = _quantile(self._counts, share)
+        return self._low + (place + 0.5) / BINS * (self._high - self._low)
+
+
+def _quantile(counts: NDArray[np.int64], share: float) -> int:
+    """The first bin up to which at least `share` of all lie."""
+    total = np.cumsum(counts)
+    return min(int(np.searchsorted(total, share * total[-1])), len(counts) - 1)
+
+
+class MapStatistics:
+    """Histograms of the five maps, even in network coordinates, filled band by band."""
+
+    def __init__(self) -> None:
+        self.counts = np.zeros((len(NAMES), BINS), dtype=np.int64)
+
+    def add(self, skins: NDArray[np.floating], where: NDArray[np.bool_]) -> None:
+        """Counts skins (..., 5) where `where` (...) is True."""
+        u = to_coordinates(skins[where])
+        places = np.clip((u * BINS).astype(np.int64), 0, BINS - 1)
+        for i in range(len(NAMES)):
+            self.counts[i] += np.bincount(places[:, i], minlength=BINS)
+
+    def percentiles(self, shares: Sequence[float] = (0.05, 0.5, 0.95)) -> dict[str, list[float]]:
+        """Values of each map, in its unit, below which these shares of the texels lie."""
+        u = np.zeros((len(shares), len(NAMES)))
+        for i, counts in enumerate(self.counts):
+            u[:, i] = [(_quantile(counts, share) + 0.5) / BINS for share in shares]
+        found = from_coordinates(u)
+        return {name: [float(v) for v in found[:, i]] for i, name in enumerate(NAMES)}
+
+    def clamped(self) -> dict[str, float]:
+        """Share of the texels at an end of a map's range."""
+        ends = self.counts[:, 0] + self.counts[:, -1]
+        totals = np.maximum(self.counts.sum(axis=1), 1)
+        return {name: float(ends[i] / totals[i]) for i, name in enumerate(NAMES)}
+
+    def histograms(self) -> dict[str, dict[str, list[float] | list[int]]]:
+        """SHOWN bars for each map between its 0.1th and 99.9th percentile: edges and counts.
+
+        Bars are even in the network coordinate; edges are in the map's unit. What lies beyond the
+        ends is not counted.
+        """
+        result: dict[str, dict[str, list[float] | list[int]]] = {}
+        for i, known in enumerate(PARAMETERS):
+            first, last = (_quantile(self.counts[i], share) for share in (0.001, 0.999))
+            width = -(-(last + 1 - first) // SHOWN)
+            first = max(0, min(first, BINS - SHOWN * width))
+            bars = np.zeros(SHOWN * width, dtype=np.int64)
+            inside = self.counts[i][first : first + SHOWN * width]
+            bars[: len(inside)] = inside
+            edges = known.from_coordinate((first + width * np.arange(SHOWN + 1)) / BINS)
+            result[known.name] = {
+                "edges": [float(f"{edge:.6g}") for edge in edges],
+                "counts": [int(count) for count in bars.reshape(SHOWN, width).sum(axis=1)],
+            }
+        return result
