@@ -40,14 +40,21 @@ def percent(share: float | None) -> str:
     if share is None or not math.isfinite(share):
         return "–"
     if 0 < share < 5e-5:
-        return "< 0.01 %"
-    return f"{100 * share:.{2 if share < 0.01 else 1}f} %"
+        return "< 0.01\u00a0%"
+    return f"{100 * share:.{2 if share < 0.01 else 1}f}\u00a0%"
+
+
+def degrees(ita: float | None) -> str:
+    """An ITA°, to a tenth."""
+    if ita is None or not math.isfinite(ita):
+        return "–"
+    return f"{ita:.1f}°".replace("-", "−")
 
 
 def category(ita: float | None) -> str:
     """The skin colour category of an ITA°."""
     if ita is None or not math.isfinite(ita):
-        return "–"
+        return "not known"
     return next((word for limit, word in CATEGORIES if ita > limit), "dark")
 
 

@@ -1,29 +1,21 @@
-// A slider over two pictures that the page shows anyway; without scripts nothing is missing.
+// A slider that uncovers the input over pictures made from it; without scripts nothing is missing.
 (() => {
-  const place = document.getElementById("compare");
-  const [before, after] = ["before", "after"].map((side) =>
-    document.querySelector(`img[data-compare="${side}"]`));
-  if (!place || !before || !after) return;
-  const box = document.createElement("div");
-  box.className = "compare";
-  for (const picture of [before, after]) {
-    const copy = document.createElement("img");
-    copy.src = picture.src;
-    copy.alt = "";
-    box.append(copy);
+  const before = document.querySelector("img[data-compare=before]");
+  if (!before) return;
+  for (const after of document.querySelectorAll("img[data-compare=after]")) {
+    const box = document.createElement("div");
+    box.className = "compare";
+    after.replaceWith(box);
+    const over = document.createElement("img");
+    Object.assign(over, { src: before.src, alt: "", className: "picture" });
+    const slider = document.createElement("input");
+    Object.assign(slider, { type: "range", min: 0, max: 100, value: 0 });
+    const label = document.createElement("label");
+    label.append("uncover the input", slider);
+    const cut = () => box.style.setProperty("--cut", `${100 - slider.value}%`);
+    slider.addEventListener("input", cut);
+    cut();
+    box.append(after, over);
+    box.after(label);
   }
-  const words = document.createElement("p");
-  words.className = "quiet";
-  for (const text of [place.dataset.before, place.dataset.after]) {
-    words.append(Object.assign(document.createElement("span"), { textContent: text }));
-  }
-  const slider = document.createElement("input");
-  Object.assign(slider, { type: "range", min: 0, max: 100, value: 50 });
-  slider.setAttribute("aria-label",
-    `Share of the width that shows ${place.dataset.before}; the rest shows ${place.dataset.after}`);
-  const cut = () => box.style.setProperty("--cut", `${slider.value}%`);
-  slider.addEventListener("input", cut);
-  cut();
-  box.append(slider, words);
-  place.append(box);
 })();
