@@ -102,8 +102,8 @@ def _calibration(report: dict[str, Any]) -> Iterator[str]:
         return
     yield "<section><h2>Calibration</h2>"
     gains = zip(("red", "green", "blue"), found["gains"], strict=True)
-    yield '<dl class="tiles">'
-    yield "".join(f"<div><dt>gain, {c}</dt><dd>{gain:.3f}</dd></div>" for c, gain in gains)
+    yield '<dl class="tiles gains">'
+    yield "".join(f"<div><dt>{c} gain</dt><dd>{gain:.3f}</dd></div>" for c, gain in gains)
     yield "</dl>"
     yield "".join(f"<p>{escape(text)}</p>" for text in words.calibration(found))
     yield "</section>\n"
