@@ -25,22 +25,28 @@ def demo(
     from cutis.apps import estimate
     from cutis.apps.console import out, steps
     from cutis.apps.edit_file import Job, edit_file
-    from cutis.apps.estimate_file import Settings, Task, calibrated, estimate_file
+    from cutis.apps.estimate_file import Settings, Task, calibrated, estimate_and_show
+    from cutis.apps.page import write_report
+    from cutis.apps.previews import reduced
     from cutis.errors import CutisError
     from cutis.maps import presets
+    from cutis.textures import read_texture
 
     examples = Path(__file__).parents[3] / "examples"
     if not (examples / CAPTURE).is_file():
         raise CutisError(
             "the demo needs a clone of the repository; for your own face: cutis estimate FILE"
         )
-    task = Task(examples / CAPTURE, examples / MASK, output, Settings(white="auto", page=True))
+    task = Task(examples / CAPTURE, examples / MASK, output, Settings(white="auto"))
     with steps(1, quiet) as progress:
         calibration = calibrated([task], progress.at)
-        results = estimate_file(task, calibration, progress.at)
+        results, pictures = estimate_and_show(task, calibration, progress.at)
         tanned = Path(f"{task.stem}.tanned.png")
         edit_file(Job(Path(f"{task.stem}.skin.exr"), tanned, presets.tanning), progress.at)
+        pictures["edited"] = reduced(read_texture(tanned).linear())
+        notes = ["Edited: tanned, melanin +40 %, all of it pheomelanin.", CREDIT]
+        write_report(output / "index.html", results, pictures, CAPTURE, notes)
     if not quiet:
         estimate.say(results, "auto")
         out.print(f"wrote the tanned face to {tanned}")
-        out.print(f"open {task.stem}.report.html")
+        out.print(f"open {output / 'index.html'}")

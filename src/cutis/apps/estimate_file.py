@@ -114,6 +114,13 @@ def estimate_file(
 
     `made_from` goes into the report, which is written last: it says that all the rest is there.
     """
+    return estimate_and_show(task, calibration, progress, made_from)[0]
+
+
+def estimate_and_show(
+    task: Task, calibration: "Calibration", progress: Progress, made_from: str | None = None
+) -> "tuple[dict[str, Any], dict[str, NDArray[np.float32]]]":
+    """The same; returns the report and the reduced pictures of the previews."""
     import cutis.maps as maps
     from cutis.apps.previews import Previews
     from cutis.colour import LINEAR
@@ -168,7 +175,7 @@ def estimate_file(
         results["made_from"] = made_from
     with replacing(Path(f"{stem}.report.json")) as path:
         path.write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
-    return results
+    return results, previews.pictures()
 
 
 def _empty(task: Task) -> Exception:

@@ -84,16 +84,6 @@ class Previews:
             _figure(Path(f"{stem}.error.png"), pictures["error"], label, "magma", (0.0, 2.0))
 
 
-def write_colour(path: Path, rgb: NDArray[np.float32]) -> None:
-    """Writes linear sRGB (H, W, 3) as a reduced 8-bit sRGB PNG."""
-    from matplotlib.image import imsave
-
-    from cutis.colour import encode_srgb
-
-    with replacing(path) as partial:
-        imsave(partial, np.clip(encode_srgb(reduced(rgb)), 0, 1))
-
-
 def _figure(
     path: Path,
     values: NDArray[np.float32],
