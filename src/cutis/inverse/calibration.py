@@ -24,9 +24,10 @@ from cutis.albedo import albedo_space
 from cutis.colour import light_conversion
 from cutis.errors import CutisError
 from cutis.inverse.fit import fit
+from cutis.inverse.nearest import curve_order
 from cutis.optics import from_coordinates
 
-SAMPLE = 800
+SAMPLE = 1600
 """Texels that gains are judged on."""
 DARK = 0.25
 """Share of the 90th percentile of brightness below which texels are hair or holes, not skin."""
@@ -132,8 +133,10 @@ def _search(rgb: NDArray[np.floating], directions: NDArray[np.float64]) -> NDArr
         raise CutisError("too few texels with colour inside the mask to calibrate; check the mask")
     brightness = bright.mean(axis=1)
     bright = bright[brightness > DARK * np.percentile(brightness, 90)]
-    picks = np.random.default_rng(0).choice(len(bright), min(SAMPLE, len(bright)), replace=False)
-    sample = bright[picks].astype(np.float32)
+    # evenly along a curve through the colours, so that the sample is as spread as they are
+    ordered = bright[curve_order(bright.astype(np.float32))]
+    places = np.linspace(0, len(ordered) - 1, min(SAMPLE, len(ordered))).astype(int)
+    sample = ordered[places].astype(np.float32)
     space = albedo_space()
     start = np.array([0.35, 0.4, 0.4, 0.5, 0.5])
 

@@ -81,7 +81,7 @@ class SkinMaps:
         """The maps of some rows, capture and original included."""
         first = rows.indices(self.shape[0])[0]
         parts: dict[str, Any] = {name: getattr(self, name)[rows] for name in (*NAMES, "mask")}
-        return replace(
+        result = replace(
             self,
             **parts,
             source=None if self.source is None else self.source[rows],
@@ -89,6 +89,9 @@ class SkinMaps:
             first_row=self.first_row + first,
             whole=self.whole or self.shape,
         )
+        if "model_albedo" in self.__dict__:  # decoded already
+            result.__dict__["model_albedo"] = self.model_albedo[rows]
+        return result
 
     # editing --------------------------------------------------------------------------------
 
