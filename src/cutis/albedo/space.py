@@ -2,12 +2,15 @@
 
 from collections.abc import Iterator
 from functools import cached_property, lru_cache
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from cutis.albedo.separated import separate
 from cutis.albedo.spectral_table import CELLS, SpectralTable, spectral_table
 from cutis.colour import spectrum_to_rgb
+from cutis.errors import CutisError
 from cutis.optics import (
     ALIAGA2022,
     EPIDERMAL_BLOOD,
@@ -18,6 +21,7 @@ from cutis.optics import (
     Tissue,
 )
 
+Array: TypeAlias = NDArray[np.float32]
 BAND = 1 << 18
 """Texels converted at a time."""
 
@@ -43,9 +47,8 @@ class AlbedoSpace:
         ]
         self.tissue = tissue
         self.table = table
-        self._model = (
-            np.array(spectra, dtype=np.float32),
-            table.coefficients,
+        self._spectra = np.array(spectra, dtype=np.float32)
+        self._axes = (
             table.low.astype(np.float32),
             (np.array(CELLS) / (table.high - table.low)).astype(np.float32),
         )
@@ -55,28 +58,44 @@ class AlbedoSpace:
         return spectrum_to_rgb(WAVELENGTHS).astype(np.float32)
 
     @property
-    def model(self) -> tuple[NDArray[np.float32], ...]:
+    def model(self) -> tuple[Array, Array, Array, Array, Array]:
         """What the kernels of `spline.py` take after the slots: spectra to RGB weights."""
-        return (*self._model, self._to_rgb)
+        return (self._spectra, self.table.coefficients, *self._axes, self._to_rgb)
 
-    def reflectance(self, parameters: ArrayLike) -> NDArray[np.float32]:
-        """(..., 5) parameters → (..., 41) reflectance in [0, 1] at `optics.WAVELENGTHS`."""
-        from cutis.albedo.spline import reflectance_kernel
+    @cached_property
+    def _separated(self) -> tuple[Array, Array, Array, Array, Array]:
+        """What the kernels of `spectrum_kernel.py` take after the slots."""
+        return (self._spectra, *separate(self.table), *self._axes)
+
+    def reflectance(
+        self, parameters: ArrayLike, out: NDArray[np.float32] | None = None
+    ) -> NDArray[np.float32]:
+        """(..., 5) parameters → (..., 41) reflectance in [0, 1] at `optics.WAVELENGTHS`.
+
+        Written into `out`, C-contiguous float32 of that shape, when it is given (2048² skins take
+        0.7 GB). Raises CutisError when `out` is another kind of array.
+        """
+        from cutis.albedo.spectrum_kernel import reflectance_kernel
 
         flat, shape = self._rows(parameters)
-        out = np.empty((len(flat), len(WAVELENGTHS)), dtype=np.float32)
+        whole = (*shape, len(WAVELENGTHS))
+        if out is None:
+            out = np.empty(whole, dtype=np.float32)
+        elif out.shape != whole or out.dtype != np.float32 or not out.flags.c_contiguous:
+            raise CutisError(f"out must be a C-contiguous float32 array of shape {whole}")
+        spectra = out.reshape(-1, len(WAVELENGTHS))
         for band in _bands(len(flat)):
-            reflectance_kernel(_float32(flat[band]), self.slots, *self._model, out[band])
-        return out.reshape(*shape, -1)
+            reflectance_kernel(_float32(flat[band]), self.slots, *self._separated, spectra[band])
+        return out
 
     def rgb(self, parameters: ArrayLike) -> NDArray[np.float32]:
         """(..., 5) parameters → (..., 3) linear sRGB under D65."""
-        from cutis.albedo.spline import rgb_kernel
+        from cutis.albedo.spectrum_kernel import rgb_kernel
 
         flat, shape = self._rows(parameters)
         out = np.empty((len(flat), 3), dtype=np.float32)
         for band in _bands(len(flat)):
-            rgb_kernel(_float32(flat[band]), self.slots, *self._model, self._to_rgb, out[band])
+            rgb_kernel(_float32(flat[band]), self.slots, *self._separated, self._to_rgb, out[band])
         return out.reshape(*shape, 3)
 
     def rgb_gradient(
@@ -90,7 +109,7 @@ class AlbedoSpace:
         slope = np.empty((len(flat), 3, flat.shape[1]), dtype=np.float32)
         for band in _bands(len(flat)):
             rgb_gradient_kernel(
-                _float32(flat[band]), self.slots, *self._model, self._to_rgb, out[band], slope[band]
+                _float32(flat[band]), self.slots, *self.model, out[band], slope[band]
             )
         slope = slope[..., list(self.places)]
         return out.reshape(*shape, 3), slope.reshape(*shape, 3, len(self.places))

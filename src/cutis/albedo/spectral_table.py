@@ -101,7 +101,7 @@ def build(
 def _finish(tissue: Tissue, nodes: NDArray[np.float64]) -> SpectralTable:
     coefficients = nodes
     for axis in range(3):
-        matrix = _chebyshev_to_spline(NODES[axis], CELLS[axis])
+        matrix = chebyshev_to_spline(NODES[axis], CELLS[axis])
         coefficients = np.moveaxis(
             np.tensordot(matrix, coefficients, axes=(1, axis + 1)), 0, axis + 1
         )
@@ -157,7 +157,7 @@ def _chebyshev_values(x: NDArray[np.float64], count: int) -> NDArray[np.float64]
 
 
 @lru_cache(maxsize=8)
-def _chebyshev_to_spline(count: int, cells: int) -> NDArray[np.float64]:
+def chebyshev_to_spline(count: int, cells: int) -> NDArray[np.float64]:
     """(cells + 3, count) least-squares matrix from Chebyshev values to B-spline coefficients."""
     from scipy.interpolate import BSpline
 

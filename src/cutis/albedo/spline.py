@@ -1,4 +1,4 @@
-"""Compiled evaluation of a spectral table: parameters → reflectance or RGB, with gradients.
+"""Compiled evaluation of a spectral table: parameters → RGB and its gradients, node by node.
 
 Kernels run over texels on all cores, in float32. Parameters (n, 5) are in their units and order;
 a sixth, where there is one, is the blood of the epidermis. `slots` is a tuple with an entry for
@@ -48,7 +48,7 @@ def locate_cell(x: Any, low: Any, scale: Any, count: Any) -> Any:
     """Index of the cell that x falls in and the fraction of the way through it."""
     cells = count - 3
     p = min(max((x - low) * scale, np.float32(0)), np.float32(cells))
-    i = min(int(p), cells - 1)
+    i = max(min(int(p), cells - 1), 0)  # what NaN is as an integer must not leave the table
     return i, p - np.float32(i)
 
 
@@ -74,54 +74,6 @@ def _mixtures(x: Any, slots: Any, spectra: Any, b: Any) -> Any:
     if len(slots) > 5:
         epidermis += x[5] * (blood - spectra[2, b])
     return pigment, blood, epidermis, x[1] * blood + (ONE - x[1]) * spectra[5, b]
-
-
-@njit(inline="always", fastmath=True)
-def _albedo(
-    x: Any, b: Any, k: Any, wt: Any, slots: Any, spectra: Any, table: Any, low: Any, scale: Any
-) -> Any:
-    """Albedo at band b of the skin x, thickness already located as (k, wt)."""
-    _, _, epidermis, dermis = _mixtures(x, slots, spectra, b)
-    i, fe = locate_cell(np.sqrt(np.sqrt(epidermis)), low[b, 0], scale[b, 0], table.shape[1])
-    j, fd = locate_cell(np.sqrt(np.sqrt(dermis)), low[b, 1], scale[b, 1], table.shape[2])
-    return _sum(table[b], i, j, k, cubic_weights(fe), cubic_weights(fd), wt)
-
-
-@njit(parallel=True, fastmath=True, cache=True)
-def reflectance_kernel(
-    skins: Any, slots: Any, spectra: Any, table: Any, low: Any, scale: Any, out: Any
-) -> None:
-    """Fills out (n, bands) with reflectance in [0, 1]."""
-    n = skins.shape[0]
-    for block in prange((n + BLOCK - 1) // BLOCK):
-        for row in range(block * BLOCK, min(n, (block + 1) * BLOCK)):
-            x = skins[row]
-            k, ft = locate_cell(np.log(x[2]), low[0, 2], scale[0, 2], table.shape[3])
-            wt = cubic_weights(ft)
-            for b in range(table.shape[0]):
-                out[row, b] = _albedo(x, b, k, wt, slots, spectra, table, low, scale)
-
-
-@njit(parallel=True, fastmath=True, cache=True)
-def rgb_kernel(
-    skins: Any, slots: Any, spectra: Any, table: Any, low: Any, scale: Any, to_rgb: Any, out: Any
-) -> None:
-    """Fills out (n, 3) with Σ_band albedo · to_rgb (bands, 3)."""
-    n = skins.shape[0]
-    for block in prange((n + BLOCK - 1) // BLOCK):
-        for row in range(block * BLOCK, min(n, (block + 1) * BLOCK)):
-            x = skins[row]
-            k, ft = locate_cell(np.log(x[2]), low[0, 2], scale[0, 2], table.shape[3])
-            wt = cubic_weights(ft)
-            red, green, blue = np.float32(0), np.float32(0), np.float32(0)
-            for b in range(table.shape[0]):
-                albedo = _albedo(x, b, k, wt, slots, spectra, table, low, scale)
-                red += albedo * to_rgb[b, 0]
-                green += albedo * to_rgb[b, 1]
-                blue += albedo * to_rgb[b, 2]
-            out[row, 0] = red
-            out[row, 1] = green
-            out[row, 2] = blue
 
 
 @njit(fastmath=True, cache=True)

@@ -1,0 +1,126 @@
+"""Compiled evaluation of the separated table (`separated.py`): skins → reflectance or RGB.
+
+Parameters and `spectra` are those of `spline.py`. A block of texels goes through one wavelength
+after the other: absorptions and spline weights of all its texels at once, then one product of two
+spline sums for each (`lanes.py`). What is read of the table for one wavelength, 17 KB, stays in the
+nearest cache.
+"""
+
+from typing import Any
+
+import numpy as np
+from numba import njit, prange
+
+from cutis.albedo.lanes import spline_product_8
+from cutis.albedo.spline import cubic_weights, locate_cell
+
+BLOCK = 128
+"""Texels that one task works on."""
+ONE, HALF = np.float32(1), np.float32(0.5)
+
+
+@njit(inline="always", fastmath=True)
+def _place(absorption: Any, low: Any, scale: Any, cells: Any) -> Any:
+    """Cell of μa^¼, as a whole float32, and the four spline weights."""
+    root = np.sqrt(np.sqrt(absorption))
+    p = min(max((root - low) * scale, np.float32(0)), np.float32(cells))
+    cell = np.floor(min(p, np.float32(cells) - HALF))
+    return cell, cubic_weights(p - cell)
+
+
+@njit(fastmath=True, cache=True)
+def _locate(
+    x: Any, slots: Any, spectra: Any, b: Any, cells: Any, low: Any, scale: Any, at: Any
+) -> None:
+    """Fills at (10, BLOCK) with epidermis cell and weights, dermis cell and weights at band b."""
+    eumelanin, pheomelanin, bare = spectra[0, b], spectra[1, b], spectra[2, b]
+    deoxygenated, oxygenated, baseline = spectra[3, b], spectra[4, b], spectra[5, b]
+    low_e, scale_e, low_d, scale_d = low[b, 0], scale[b, 0], low[b, 1], scale[b, 1]
+    cells_e, cells_d = cells
+    for i in range(BLOCK):
+        pigment = x[3, i] * eumelanin + (ONE - x[3, i]) * pheomelanin
+        blood = x[4, i] * oxygenated + (ONE - x[4, i]) * deoxygenated
+        epidermis = x[0, i] * pigment + (ONE - x[0, i]) * bare
+        if len(slots) > 5:
+            epidermis += x[5, i] * (blood - bare)
+        dermis = x[1, i] * blood + (ONE - x[1, i]) * baseline
+        at[0, i], (at[1, i], at[2, i], at[3, i], at[4, i]) = _place(
+            epidermis, low_e, scale_e, cells_e
+        )
+        at[5, i], (at[6, i], at[7, i], at[8, i], at[9, i]) = _place(dermis, low_d, scale_d, cells_d)
+
+
+@njit(inline="always", fastmath=True)
+def _node(cell: Any, cells: Any) -> Any:
+    """A cell of `_locate` as an index that is inside the table even when the skin is NaN."""
+    return min(max(int(cell), 0), cells - 1)
+
+
+@njit(fastmath=True, cache=True)
+def _load(skins: Any, slots: Any, thickness: Any, x: Any, at: Any) -> None:
+    """Parameters (n, 5 or 6) into the rows of x (6, BLOCK); thickness cell and weights into at."""
+    low, scale, count = thickness
+    for i in range(len(skins)):
+        for p in range(len(slots)):
+            x[p, i] = skins[i, p]
+        k, f = locate_cell(np.log(x[2, i]), low, scale, count)
+        at[0, i] = np.float32(k)
+        at[1, i], at[2, i], at[3, i], at[4, i] = cubic_weights(f)
+
+
+@njit(inline="always", fastmath=True)
+def _albedo(b: Any, i: Any, at: Any, at_t: Any, upper: Any, lower: Any) -> Any:
+    e = _node(at[0, i], upper.shape[1] - 3)
+    d = _node(at[5, i], lower.shape[1] - 3)
+    k = _node(at_t[0, i], upper.shape[2] - 3)
+    by_e = (at[1, i], at[2, i], at[3, i], at[4, i])
+    by_t = (at_t[1, i], at_t[2, i], at_t[3, i], at_t[4, i])
+    by_d = (at[6, i], at[7, i], at[8, i], at[9, i])
+    return spline_product_8(upper, (b, e, k), (by_e, by_t), lower, (b, d), (by_d,))
+
+
+@njit(parallel=True, fastmath=True, cache=True)
+def reflectance_kernel(
+    skins: Any, slots: Any, spectra: Any, upper: Any, lower: Any, low: Any, scale: Any, out: Any
+) -> None:
+    """Fills out (n, bands) with reflectance in [0, 1]."""
+    n = skins.shape[0]
+    cells = upper.shape[1] - 3, lower.shape[1] - 3
+    thickness = low[0, 2], scale[0, 2], upper.shape[2]
+    for block in prange((n + BLOCK - 1) // BLOCK):
+        x = np.ones((6, BLOCK), dtype=np.float32)
+        at = np.empty((10, BLOCK), dtype=np.float32)
+        at_t = np.empty((5, BLOCK), dtype=np.float32)
+        part = skins[block * BLOCK : min(n, (block + 1) * BLOCK)]
+        _load(part, slots, thickness, x, at_t)
+        for b in range(spectra.shape[1]):
+            _locate(x, slots, spectra, b, cells, low, scale, at)
+            for i in range(len(part)):
+                out[block * BLOCK + i, b] = _albedo(b, i, at, at_t, upper, lower)
+
+
+@njit(parallel=True, fastmath=True, cache=True)
+def rgb_kernel(
+    skins: Any, slots: Any, spectra: Any, upper: Any, lower: Any, low: Any, scale: Any, to_rgb: Any,
+    out: Any
+) -> None:  # fmt: skip
+    """Fills out (n, 3) with Σ_band albedo · to_rgb (bands, 3)."""
+    n = skins.shape[0]
+    cells = upper.shape[1] - 3, lower.shape[1] - 3
+    thickness = low[0, 2], scale[0, 2], upper.shape[2]
+    for block in prange((n + BLOCK - 1) // BLOCK):
+        x = np.ones((6, BLOCK), dtype=np.float32)
+        at = np.empty((10, BLOCK), dtype=np.float32)
+        at_t = np.empty((5, BLOCK), dtype=np.float32)
+        part = skins[block * BLOCK : min(n, (block + 1) * BLOCK)]
+        _load(part, slots, thickness, x, at_t)
+        rgb = out[block * BLOCK : block * BLOCK + len(part)]
+        rgb[:] = 0
+        for b in range(spectra.shape[1]):
+            _locate(x, slots, spectra, b, cells, low, scale, at)
+            red, green, blue = to_rgb[b, 0], to_rgb[b, 1], to_rgb[b, 2]
+            for i in range(len(part)):
+                albedo = _albedo(b, i, at, at_t, upper, lower)
+                rgb[i, 0] += albedo * red
+                rgb[i, 1] += albedo * green
+                rgb[i, 2] += albedo * blue
