@@ -43,7 +43,7 @@ class OcioSpace:
 
 
 def _applied(processor: Any, values: ArrayLike) -> NDArray[np.float32]:
-    colours = np.array(values, dtype=np.float32)  # a copy: processors work in place
+    colours = np.array(values, np.float32, order="C")  # a copy: processors work in place
     flat = colours.reshape(-1, 3)
     if len(flat):
         processor.applyRGB(flat)
