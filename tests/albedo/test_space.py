@@ -5,6 +5,7 @@ import pytest
 
 from cutis.albedo import albedo_space, uniform
 from cutis.colour import spectrum_to_rgb
+from cutis.errors import CutisError
 from cutis.optics import ALIAGA2022, NAMES, PARAMETERS, WAVELENGTHS
 from cutis.transport import two_layer_albedo
 
@@ -36,6 +37,15 @@ def test_shapes_and_types():
     assert SPACE.reflectance(grid).dtype == SPACE.rgb(grid).dtype == np.float32
     np.testing.assert_array_equal(SPACE.rgb(grid).reshape(-1, 3), SPACE.rgb(SKINS[:60]))
     np.testing.assert_allclose(colour, SPACE.rgb(grid), atol=1e-6)
+
+
+def test_spectra_into_an_array_that_is_there():
+    out = np.full((10, 50, 41), np.nan, dtype=np.float32)
+    assert SPACE.reflectance(SKINS.reshape(10, 50, 5), out) is out
+    np.testing.assert_array_equal(out.reshape(-1, 41), SPACE.reflectance(SKINS))
+    for other in (out.astype(float), out[:9], out.transpose(1, 0, 2), out[..., ::-1]):
+        with pytest.raises(CutisError, match="float32 array of shape"):
+            SPACE.reflectance(SKINS.reshape(10, 50, 5), other)
 
 
 def test_one_space_per_tissue():

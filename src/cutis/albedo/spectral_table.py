@@ -76,7 +76,7 @@ def build(
     low, high = axis_ranges(tissue)
 
     def solve(i: int) -> NDArray[np.float64]:
-        axes = [low[i, a] + _chebyshev(NODES[a]) * (high[i, a] - low[i, a]) for a in range(3)]
+        axes = [low[i, a] + chebyshev(NODES[a]) * (high[i, a] - low[i, a]) for a in range(3)]
         return two_layer_albedo(
             axes[0] ** 4,
             axes[1] ** 4,
@@ -140,7 +140,7 @@ def _spectral_table(tissue: Tissue) -> SpectralTable:
     return build(tissue)
 
 
-def _chebyshev(count: int) -> NDArray[np.float64]:
+def chebyshev(count: int) -> NDArray[np.float64]:
     """(count,) Chebyshev points of [0, 1], ends included."""
     return (1.0 - np.cos(np.pi * np.arange(count) / (count - 1))) / 2
 
@@ -149,19 +149,24 @@ def _chebyshev_values(x: NDArray[np.float64], count: int) -> NDArray[np.float64]
     """(len(x), count) matrix from values at Chebyshev points to values at x, barycentric."""
     sign = (-1.0) ** np.arange(count)
     sign[[0, -1]] *= 0.5
-    gap = x[:, None] - _chebyshev(count)
+    gap = x[:, None] - chebyshev(count)
     at_node = np.abs(gap) < 1e-14
     matrix = sign / np.where(at_node, 1.0, gap)
     matrix /= matrix.sum(axis=1, keepdims=True)
     return np.where(np.any(at_node, axis=1, keepdims=True), at_node, matrix)
 
 
-@lru_cache(maxsize=8)
-def chebyshev_to_spline(count: int, cells: int) -> NDArray[np.float64]:
-    """(cells + 3, count) least-squares matrix from Chebyshev values to B-spline coefficients."""
+@lru_cache(maxsize=16)
+def chebyshev_to_spline(count: int, cells: int, degree: int = 3) -> NDArray[np.float64]:
+    """(cells + degree, count) least-squares matrix from Chebyshev values to B-splines of [0, 1]."""
+    x = np.linspace(0.0, 1.0, 8 * cells + 1)
+    return np.linalg.pinv(spline_basis(x, cells, degree)) @ _chebyshev_values(x, count)
+
+
+def spline_basis(x: NDArray[np.float64], cells: int, degree: int = 3) -> NDArray[np.float64]:
+    """(len(x), cells + degree) values of the uniform B-splines at x; the end's beyond [0, 1]."""
     from scipy.interpolate import BSpline
 
-    x = np.linspace(0.0, 1.0, 8 * cells + 1)
-    knots = (np.arange(cells + 7) - 3) / cells
-    basis = BSpline.design_matrix(x, knots, 3, extrapolate=True).toarray()
-    return np.linalg.pinv(basis) @ _chebyshev_values(x, count)
+    knots = (np.arange(cells + 2 * degree + 1) - degree) / cells
+    inside = np.clip(x, 0.0, 1.0)
+    return BSpline.design_matrix(inside, knots, degree, extrapolate=True).toarray()

@@ -12,20 +12,11 @@ import numpy as np
 from numba import njit, prange
 
 from cutis.albedo.lanes import spline_product_8
-from cutis.albedo.spline import cubic_weights, locate_cell
+from cutis.albedo.spline import cubic_weights, first_node, locate_cell, place_in_cells
 
 BLOCK = 128
 """Texels that one task works on."""
-ONE, HALF = np.float32(1), np.float32(0.5)
-
-
-@njit(inline="always", fastmath=True)
-def _place(absorption: Any, low: Any, scale: Any, cells: Any) -> Any:
-    """Cell of μa^¼, as a whole float32, and the four spline weights."""
-    root = np.sqrt(np.sqrt(absorption))
-    p = min(max((root - low) * scale, np.float32(0)), np.float32(cells))
-    cell = np.floor(min(p, np.float32(cells) - HALF))
-    return cell, cubic_weights(p - cell)
+ONE = np.float32(1)
 
 
 @njit(fastmath=True, cache=True)
@@ -36,7 +27,7 @@ def _locate(
     eumelanin, pheomelanin, bare = spectra[0, b], spectra[1, b], spectra[2, b]
     deoxygenated, oxygenated, baseline = spectra[3, b], spectra[4, b], spectra[5, b]
     low_e, scale_e, low_d, scale_d = low[b, 0], scale[b, 0], low[b, 1], scale[b, 1]
-    cells_e, cells_d = cells
+    cells_e, cells_d = np.float32(cells[0]), np.float32(cells[1])
     for i in range(BLOCK):
         pigment = x[3, i] * eumelanin + (ONE - x[3, i]) * pheomelanin
         blood = x[4, i] * oxygenated + (ONE - x[4, i]) * deoxygenated
@@ -44,16 +35,10 @@ def _locate(
         if len(slots) > 5:
             epidermis += x[5, i] * (blood - bare)
         dermis = x[1, i] * blood + (ONE - x[1, i]) * baseline
-        at[0, i], (at[1, i], at[2, i], at[3, i], at[4, i]) = _place(
-            epidermis, low_e, scale_e, cells_e
-        )
-        at[5, i], (at[6, i], at[7, i], at[8, i], at[9, i]) = _place(dermis, low_d, scale_d, cells_d)
-
-
-@njit(inline="always", fastmath=True)
-def _node(cell: Any, cells: Any) -> Any:
-    """A cell of `_locate` as an index that is inside the table even when the skin is NaN."""
-    return min(max(int(cell), 0), cells - 1)
+        at[0, i], f = place_in_cells(np.sqrt(np.sqrt(epidermis)), low_e, scale_e, cells_e)
+        at[1, i], at[2, i], at[3, i], at[4, i] = cubic_weights(f)
+        at[5, i], f = place_in_cells(np.sqrt(np.sqrt(dermis)), low_d, scale_d, cells_d)
+        at[6, i], at[7, i], at[8, i], at[9, i] = cubic_weights(f)
 
 
 @njit(fastmath=True, cache=True)
@@ -70,9 +55,9 @@ def _load(skins: Any, slots: Any, thickness: Any, x: Any, at: Any) -> None:
 
 @njit(inline="always", fastmath=True)
 def _albedo(b: Any, i: Any, at: Any, at_t: Any, upper: Any, lower: Any) -> Any:
-    e = _node(at[0, i], upper.shape[1] - 3)
-    d = _node(at[5, i], lower.shape[1] - 3)
-    k = _node(at_t[0, i], upper.shape[2] - 3)
+    e = first_node(at[0, i], upper.shape[1] - 3)
+    d = first_node(at[5, i], lower.shape[1] - 3)
+    k = first_node(at_t[0, i], upper.shape[2] - 3)
     by_e = (at[1, i], at[2, i], at[3, i], at[4, i])
     by_t = (at_t[1, i], at_t[2, i], at_t[3, i], at_t[4, i])
     by_d = (at[6, i], at[7, i], at[8, i], at[9, i])

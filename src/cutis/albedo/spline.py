@@ -66,6 +66,30 @@ def _sum(c: Any, i: Any, j: Any, k: Any, we: Any, wd: Any, wt: Any) -> Any:
 
 
 @njit(inline="always", fastmath=True)
+def quadratic_weights(f: Any) -> Any:
+    """The three quadratic B-spline weights at fraction f of a cell."""
+    g = ONE - f
+    return HALF * g * g, HALF + f * g, HALF * f * f
+
+
+@njit(inline="always", fastmath=True)
+def place_in_cells(x: Any, low: Any, scale: Any, cells: Any) -> Any:
+    """`locate_cell` in a form that compilers run on many x at once.
+
+    The cell is a whole float32, `cells` their number as one.
+    """
+    p = min(max((x - low) * scale, np.float32(0)), cells)
+    cell = np.floor(min(p, cells - HALF))
+    return cell, p - cell
+
+
+@njit(inline="always", fastmath=True)
+def first_node(cell: Any, cells: Any) -> Any:
+    """A cell of `place_in_cells` as an index, inside the table even when x was NaN."""
+    return min(max(int(cell), 0), cells - 1)
+
+
+@njit(inline="always", fastmath=True)
 def _mixtures(x: Any, slots: Any, spectra: Any, b: Any) -> Any:
     """μa of melanin, of blood, of epidermis and of dermis at band b, cm⁻¹."""
     pigment = x[3] * spectra[0, b] + (ONE - x[3]) * spectra[1, b]

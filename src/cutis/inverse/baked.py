@@ -11,6 +11,7 @@ in which the gamut of skin is compact. Colours beyond the ends of an axis take t
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -27,14 +28,15 @@ HIGH = (0.92, 0.93, 0.58)
 CELLS = (56, 40, 40)
 """Cells of the splines over a, b, c."""
 
-
 PRECISION = (3.0, 1.0, 1.0, 3.0, 1.0)
 """Inverse variances of the logits around the encoder's estimate."""
+LANES = 8
+"""Values per node in memory: what a vector holds."""
 TOLERANCE = 0.01
 """Relative colour error worth one standard deviation of the prior (see `fit.py`)."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Baked:
     """B-spline coefficients (a, b, c, 5), float32, of coordinates u over the chart."""
 
@@ -42,14 +44,28 @@ class Baked:
 
     def __call__(self, colours: ArrayLike) -> NDArray[np.float32]:
         """(n, 3) calibrated linear sRGB → (n, 5) network coordinates in [0, 1]."""
+        return self._look_up(colours, units=False)
+
+    def skins(self, colours: ArrayLike) -> NDArray[np.float32]:
+        """(n, 3) calibrated linear sRGB → (n, 5) parameters in their units, within their ranges."""
+        return self._look_up(colours, units=True)
+
+    def _look_up(self, colours: ArrayLike, units: bool) -> NDArray[np.float32]:
         from cutis.inverse.baked_kernel import look_up
+        from cutis.inverse.units_kernel import RANGES
 
         rgb = np.ascontiguousarray(colours, dtype=np.float32)
         out = np.empty((len(rgb), 5), dtype=np.float32)
         low = np.array(LOW, dtype=np.float32)
         scale = (np.array(CELLS) / (np.array(HIGH) - np.array(LOW))).astype(np.float32)
-        look_up(rgb, self.coefficients, low, scale, out)
+        look_up(rgb, self._lanes, low, scale, RANGES, units, out)
         return out
+
+    @cached_property
+    def _lanes(self) -> NDArray[np.float32]:
+        """The coefficients in eight lanes, of which the last three are 0."""
+        padding = [(0, 0)] * 3 + [(0, LANES - 5)]
+        return np.ascontiguousarray(np.pad(self.coefficients, padding))
 
 
 def chart_colours() -> NDArray[np.float32]:

@@ -1,51 +1,86 @@
-"""Compiled look-up of the baked inverse: cubic B-splines over the chart of colours."""
+"""Compiled look-up of the baked inverse: cubic B-splines over the chart of colours.
+
+A block of texels at a time: first cells and weights of all, then the sum over 4 · 4 · 4 nodes of
+eight lanes for each (`albedo/lanes.py`), then ranges and powers of all.
+"""
 
 from typing import Any
 
 import numpy as np
 from numba import njit, prange
 
-from cutis.albedo.spline import cubic_weights, locate_cell
+from cutis.albedo.lanes import spline_lanes_8
+from cutis.albedo.spline import cubic_weights, first_node, place_in_cells
+from cutis.inverse.units_kernel import store_units
 
-BLOCK = 1024
+BLOCK = 128
 """Texels that one task works on."""
 DARK = np.float32(1e-6)
 """Keeps ratios of black texels finite."""
+ZERO, ONE = np.float32(0), np.float32(1)
+
+
+@njit(fastmath=True, error_model="numpy", cache=True)
+def _load(colours: Any, x: Any) -> None:
+    """Chart coordinates a, b, c of colours (n, 3) into the rows of x (3, BLOCK)."""
+    for i in range(len(colours)):
+        x[0, i], x[1, i], x[2, i] = colours[i, 0], colours[i, 1], colours[i, 2]
+    for i in range(BLOCK):
+        red, green, blue = max(x[0, i], DARK), max(x[1, i], DARK), max(x[2, i], DARK)
+        x[0, i] = np.sqrt(np.sqrt(green))
+        x[1, i] = red / (red + green)
+        x[2, i] = blue / (blue + green)
+
+
+@njit(fastmath=True, cache=True)
+def _place(x: Any, low: Any, scale: Any, count: Any, at: Any) -> None:
+    """Fills at (5, BLOCK) with cell and four weights of coordinates x (BLOCK,) on one axis."""
+    cells = np.float32(count)
+    for i in range(BLOCK):
+        at[0, i], f = place_in_cells(x[i], low, scale, cells)
+        at[1, i], at[2, i], at[3, i], at[4, i] = cubic_weights(f)
+
+
+@njit(fastmath=True, cache=True)
+def _store_coordinates(u: Any, out: Any) -> None:
+    for i in range(len(out)):
+        for p in range(5):
+            out[i, p] = min(max(u[i, p], ZERO), ONE)
 
 
 @njit(parallel=True, fastmath=True, cache=True)
-def look_up(colours: Any, table: Any, low: Any, scale: Any, out: Any) -> None:
-    """Fills out (n, 5) with coordinates in [0, 1] of colours (n, 3)."""
+def look_up(
+    colours: Any, table: Any, low: Any, scale: Any, ranges: Any, units: Any, out: Any
+) -> None:
+    """Fills out (n, 5) with the skins of colours (n, 3).
+
+    `table` (a, b, c, 8) has coordinates in its first five lanes; `low`, `scale` (3,) turn a, b, c
+    into cells. Coordinates, in [0, 1], are written as they are, or as units by `ranges` (see
+    `units_kernel.py`).
+    """
     n = colours.shape[0]
+    cells = (table.shape[0] - 3, table.shape[1] - 3, table.shape[2] - 3)
     for block in prange((n + BLOCK - 1) // BLOCK):
-        for row in range(block * BLOCK, min(n, (block + 1) * BLOCK)):
-            red = max(colours[row, 0], DARK)
-            green = max(colours[row, 1], DARK)
-            blue = max(colours[row, 2], DARK)
-            i, fa = locate_cell(np.sqrt(np.sqrt(green)), low[0], scale[0], table.shape[0])
-            j, fb = locate_cell(red / (red + green), low[1], scale[1], table.shape[1])
-            k, fc = locate_cell(blue / (blue + green), low[2], scale[2], table.shape[2])
-            wa, wb, wc = cubic_weights(fa), cubic_weights(fb), cubic_weights(fc)
-            s0, s1, s2, s3, s4 = (
-                np.float32(0),
-                np.float32(0),
-                np.float32(0),
-                np.float32(0),
-                np.float32(0),
+        x = np.ones((3, BLOCK), dtype=np.float32)
+        at = np.empty((15, BLOCK), dtype=np.float32)
+        u = np.empty((BLOCK, 8), dtype=np.float32)
+        start, end = block * BLOCK, min(n, (block + 1) * BLOCK)
+        _load(colours[start:end], x)
+        for axis in range(3):
+            _place(x[axis], low[axis], scale[axis], cells[axis], at[5 * axis : 5 * axis + 5])
+        for i in range(end - start):
+            cell = (
+                first_node(at[0, i], cells[0]),
+                first_node(at[5, i], cells[1]),
+                first_node(at[10, i], cells[2]),
             )
-            for p in range(4):
-                for q in range(4):
-                    wpq = wa[p] * wb[q]
-                    for r in range(4):
-                        w = wpq * wc[r]
-                        node = table[i + p, j + q, k + r]
-                        s0 += w * node[0]
-                        s1 += w * node[1]
-                        s2 += w * node[2]
-                        s3 += w * node[3]
-                        s4 += w * node[4]
-            out[row, 0] = min(max(s0, np.float32(0)), np.float32(1))
-            out[row, 1] = min(max(s1, np.float32(0)), np.float32(1))
-            out[row, 2] = min(max(s2, np.float32(0)), np.float32(1))
-            out[row, 3] = min(max(s3, np.float32(0)), np.float32(1))
-            out[row, 4] = min(max(s4, np.float32(0)), np.float32(1))
+            weights = (
+                (at[1, i], at[2, i], at[3, i], at[4, i]),
+                (at[6, i], at[7, i], at[8, i], at[9, i]),
+                (at[11, i], at[12, i], at[13, i], at[14, i]),
+            )
+            spline_lanes_8(table, cell, weights, u, i)
+        if units:
+            store_units(u, ranges, out[start:end])
+        else:
+            _store_coordinates(u, out[start:end])

@@ -1,6 +1,6 @@
 """Models by name: how a colour becomes a skin, and a skin a colour.
 
-`default` reads the baked inverse and decodes through the exact albedo space;
+`default` reads the baked inverse and decodes by the colour table of the albedo space;
 `aliaga2022` is the paper's pair of networks, trained by `cutis train`; `lookup` and `lookup-55k`
 are its look-up tensors of 256 000 and 55 296 skins, `kubelka-munk` the two-parameter baseline.
 """
@@ -14,14 +14,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cutis.albedo import albedo_space
+from cutis.albedo.colour_table import colour_table
 from cutis.errors import CutisError
 from cutis.inverse.lookup import SHAPES, lookup_tensor
 from cutis.inverse.network import Perceptron, load_weights
-from cutis.optics import from_coordinates, to_coordinates
 
 MODELS = ("default", "aliaga2022", *SHAPES, "kubelka-munk")
 """Names that `load_model` knows; it also takes the path of a weights file."""
+Conversion = Callable[[NDArray[np.float32]], NDArray[np.float32]]
 BAND = 1 << 18
 """Texels converted at a time."""
 
@@ -30,19 +30,17 @@ BAND = 1 << 18
 class Model:
     """An inverse and its forward model.
 
-    `to_coordinates` maps (n, 3) calibrated linear sRGB to (n, 5) network coordinates, `to_rgb`
-    maps (n, 5) parameters in their units to (n, 3) linear sRGB.
+    `to_skins` maps (n, 3) calibrated linear sRGB to (n, 5) parameters in their units and within
+    their ranges, `to_rgb` maps those to (n, 3) linear sRGB.
     """
 
     name: str
-    to_coordinates: Callable[[NDArray[np.float32]], NDArray[np.float32]]
-    to_rgb: Callable[[NDArray[np.float32]], NDArray[np.float32]]
+    to_skins: Conversion
+    to_rgb: Conversion
 
     def encode(self, rgb: ArrayLike) -> NDArray[np.float32]:
         """(..., 3) calibrated linear sRGB → (..., 5) parameters in their units."""
-        return _in_bands(
-            lambda c: from_coordinates(self.to_coordinates(c)).astype(np.float32), rgb, 5
-        )
+        return _in_bands(self.to_skins, rgb, 5)
 
     def decode(self, parameters: ArrayLike) -> NDArray[np.float32]:
         """(..., 5) parameters in their units → (..., 3) linear sRGB under D65."""
@@ -69,15 +67,15 @@ def load_model(name: str = "default") -> Model:
 
         with resources.as_file(weights.joinpath("default.npz")) as file:
             baked = load_baked(file)
-        return Model(name, baked, albedo_space().rgb)
+        return Model(name, baked.skins, colour_table().rgb)
     if name in SHAPES:
         tensor = lookup_tensor(name)
-        return Model(name, tensor.encode, tensor.decode)
+        return Model(name, _in_units(tensor.encode), tensor.decode)
     if name == "kubelka-munk":
         from cutis.inverse.kubelka_munk import kubelka_munk_inverse
 
         baseline = kubelka_munk_inverse()
-        return Model(name, baseline.encode, baseline.decode)
+        return Model(name, _in_units(baseline.encode), baseline.decode)
     if name in MODELS:
         with resources.as_file(weights.joinpath(f"{name}.safetensors")) as file:
             return _networks(name, file)
@@ -96,5 +94,16 @@ def shipped_encoder() -> Perceptron:
 
 
 def _networks(name: str, file: Path) -> Model:
+    from cutis.inverse.units_kernel import from_units
+
     networks = load_weights(file)
-    return Model(name, networks.encoder, lambda skins: networks.decoder(to_coordinates(skins)))
+    return Model(
+        name, _in_units(networks.encoder), lambda skins: networks.decoder(from_units(skins))
+    )
+
+
+def _in_units(encode: Conversion) -> Conversion:
+    """What gives network coordinates, giving parameters in their units."""
+    from cutis.inverse.units_kernel import to_units
+
+    return lambda colours: to_units(encode(colours))

@@ -1,0 +1,103 @@
+"""The colour table: its plain form, its round trip, its error against the exact space."""
+
+import io
+
+import numpy as np
+import pytest
+
+from cutis.albedo import albedo_space, uniform
+from cutis.albedo.colour_table import (
+    AXES,
+    CELLS,
+    ENDS,
+    TERMS,
+    build_colours,
+    colour_table,
+    from_axis,
+    load_colours,
+    save_colours,
+    to_axis,
+)
+from cutis.colour import delta_e
+from cutis.optics import PARAMETERS
+
+SKINS = uniform(3000, seed=21).astype(np.float32)
+
+
+def test_kernel_is_the_plain_sum():
+    ends = np.array(
+        [[(p.low, p.high)[(k >> i) & 1] for i, p in enumerate(PARAMETERS)] for k in range(32)]
+    )
+    skins = np.concatenate([SKINS, ends]).astype(np.float32)
+    table = colour_table()
+    np.testing.assert_allclose(table.rgb(skins), table.reference(skins), atol=2e-6)
+
+
+def test_colours_of_random_skins_are_those_of_the_exact_space():
+    skins = uniform(60_000, seed=22)
+    exact, table = albedo_space().rgb(skins), colour_table().rgb(skins)
+    assert np.abs(exact - table).max() < 3e-4  # measured 1.5e-4
+    errors = delta_e(exact, table)
+    assert np.percentile(errors, 99) < 0.01  # 0.0059
+    assert errors.max() < 0.04  # 0.018
+
+
+def test_ends_of_the_ranges_too():
+    corners = np.array(np.meshgrid(*[(p.low, p.high) for p in PARAMETERS], indexing="ij"))
+    corners = corners.reshape(5, -1).T
+    exact = albedo_space().rgb(corners)
+    assert np.abs(colour_table().rgb(corners) - exact).max() < 3e-4
+
+
+@pytest.mark.shared
+def test_faces_decode_as_by_the_exact_space(shared_data):
+    from cutis.figures.subjects import every_face
+    from cutis.inverse import load_model
+
+    count = 0
+    for name, colours in every_face(shared_data, 4000):
+        skins = load_model().encode(colours)
+        errors = delta_e(albedo_space().rgb(skins), colour_table().rgb(skins))
+        assert np.percentile(errors, 99) <= 0.02, name  # 0.0064 the worst
+        count += 1
+    assert count > 10
+
+
+def test_what_ships_is_what_is_built():
+    built, shipped = build_colours(albedo_space()), colour_table()
+    np.testing.assert_allclose(built.rgb(SKINS), shipped.rgb(SKINS), atol=2e-6)
+
+
+def test_round_trip_and_size(tmp_path):
+    table = colour_table()
+    file = io.BytesIO()
+    save_colours(table, file)
+    assert len(file.getvalue()) < 1e6
+    file.seek(0)
+    again = load_colours(file)
+    np.testing.assert_array_equal(again.upper, table.upper)
+    np.testing.assert_array_equal(again.lower, table.lower)
+    assert table.upper.shape == (*(n + 2 for n in CELLS[:3]), TERMS)
+    assert table.lower.shape == (3, *(n + 2 for n in CELLS[3:]), TERMS)
+
+
+def test_axes_are_there_and_back():
+    for i, p in enumerate(AXES):
+        values = np.linspace(p.low, p.high, 50)
+        np.testing.assert_allclose(from_axis(i, to_axis(i, values)), values, rtol=1e-12)
+        assert ENDS[i][0] < ENDS[i][1]
+
+
+def test_shapes_and_skins_that_are_not_numbers():
+    table = colour_table()
+    grid = SKINS[:60].reshape(4, 15, 5)
+    assert table.rgb(grid).shape == (4, 15, 3)
+    assert table.rgb(grid).dtype == np.float32
+    np.testing.assert_array_equal(table.rgb(grid).reshape(-1, 3), table.rgb(SKINS[:60]))
+    assert table.rgb(SKINS[0]).shape == (3,)
+    assert table.rgb(np.empty((0, 5))).shape == (0, 3)
+    spoilt = SKINS[:200].copy()
+    spoilt[3] = np.nan
+    spoilt[5] = [-1, np.inf, -60, 1e30, -1e30]
+    good = np.delete(np.arange(200), [3, 5])
+    np.testing.assert_array_equal(table.rgb(spoilt)[good], table.rgb(SKINS[:200])[good])
