@@ -97,12 +97,14 @@ def _marks(tasks: Sequence[Task]) -> dict[Path, str]:
             what = "no such file" if isinstance(error, FileNotFoundError) else str(error.strerror)
             raise CutisError(f"{path}: {what}; check the name") from error
     shared = tasks[0].settings
+    config = Path(shared.ocio) if shared.ocio else None
+    colours = [digest(config)] if config is not None and config.is_file() else []
     alone = "auto" not in (shared.white, shared.exposure)
     whole = sorted(known[task.face] for task in tasks)
     marks = {}
     for task in tasks:
         own = [known[path] for path in (task.face, task.mask, task.regions) if path]
-        basis = [PIPELINE, asdict(task.settings), own, [] if alone else whole]
+        basis = [PIPELINE, asdict(task.settings), own, colours, [] if alone else whole]
         marks[task.face] = hashlib.sha256(json.dumps(basis).encode()).hexdigest()
     return marks
 

@@ -72,21 +72,22 @@ def estimate(
     from cutis.errors import CutisError
     from cutis.inverse import load_model
     from cutis.textures import colour_space
+    from cutis.textures.ocio import configured
 
     if method is not None:
         if model != "default":
             raise CutisError("give either --model or --method, not both")
         model = options.method_name(method)
+    ocio = ocio or configured() or ""  # said to workers, who may have another $OCIO
     settings = Settings(
-        white, exposure, illuminant, model, colorspace, ocio, output_colorspace or "linear", half,
-        report,
+        white, exposure, illuminant, model, colorspace, ocio, output_colorspace, half, report,
     )  # fmt: skip
     # what is wrong with the flags is said now rather than after reading
     light_conversion(illuminant)
     options.white_gains(white), options.exposure_gain(exposure)
     load_model(model)
-    for name in (settings.colorspace, settings.output_colorspace):
-        if name != "auto":
+    for name in (None if colorspace == "auto" else colorspace, output_colorspace):
+        if name is not None:
             colour_space(name, ocio)
     sets = [
         [Task(face, companion(mask, face), output, settings, regions) for face in captures]

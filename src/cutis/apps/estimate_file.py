@@ -33,7 +33,8 @@ class Settings:
     model: str = "default"
     colorspace: str = "auto"
     ocio: str | None = None
-    output_colorspace: str = "linear"
+    """A configuration; "" for none, None for $OCIO."""
+    output_colorspace: str | None = None
     half: bool = False
     page: bool = False
 
@@ -128,7 +129,8 @@ def estimate_and_show(
 
     how, stem = task.settings, task.stem
     kind: Literal["half", "float"] = "half" if how.half else "float"
-    space = colour_space(how.output_colorspace, how.ocio)
+    name = how.output_colorspace
+    space = LINEAR if name is None else colour_space(name, how.ocio)
     seen = False
     with contextlib.ExitStack() as stack:
         texture, mask = stack.enter_context(task.opened())

@@ -60,7 +60,11 @@ Colorspace = Annotated[
 ]
 OutputColorspace = Annotated[
     str | None,
-    typer.Option("--output-colorspace", help="Colour space to write; by default the capture's."),
+    typer.Option(
+        "--output-colorspace",
+        help="Colour space to write: names as for --colorspace. By default edit keeps the "
+        "capture's, and estimate writes NAME.model.exr in linear sRGB.",
+    ),
 ]
 Ocio = Annotated[
     str | None,

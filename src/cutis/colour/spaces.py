@@ -57,11 +57,25 @@ def _to_xyz(primaries: Primaries, white: tuple[float, float]) -> NDArray[np.floa
     return columns * np.linalg.solve(columns, _white(white))
 
 
+def adaptation(white: ArrayLike, other: ArrayLike) -> NDArray[np.float64]:
+    """(3, 3) XYZ under `white` (3,) → XYZ that look the same under `other`, by Bradford."""
+    gains = (BRADFORD @ np.asarray(other)) / (BRADFORD @ np.asarray(white))
+    return np.linalg.inv(BRADFORD) @ (gains[:, None] * BRADFORD)
+
+
 def adapted(to_xyz: NDArray[np.float64], white: ArrayLike) -> NDArray[np.float64]:
     """(3, 3) RGB → XYZ under `white` (3,) → RGB → linear sRGB, adapted by Bradford."""
-    gains = (BRADFORD @ _white(D65)) / (BRADFORD @ np.asarray(white))
-    chromatic = np.linalg.inv(BRADFORD) @ (gains[:, None] * BRADFORD)
-    return np.linalg.inv(_to_xyz(REC709, D65)) @ chromatic @ to_xyz
+    return np.linalg.inv(_to_xyz(REC709, D65)) @ adaptation(white, _white(D65)) @ to_xyz
+
+
+def chromaticities_of(matrix: ArrayLike) -> tuple[float, ...]:
+    """x, y of red, green, blue and white of values that `matrix` (3, 3) takes to linear sRGB.
+
+    They are of colours under D65, as those of sRGB.
+    """
+    xyz = _to_xyz(REC709, D65) @ np.asarray(matrix, dtype=np.float64)
+    columns = [*xyz.T, xyz.sum(axis=1)]
+    return tuple(float(v / column.sum()) for column in columns for v in column[:2])
 
 
 @dataclass(frozen=True)
@@ -88,6 +102,11 @@ class RGBSpace:
     def chromaticities(self) -> tuple[float, ...]:
         """x, y of red, green, blue and white: eight numbers, as OpenEXR stores them."""
         return tuple(v for xy in (*self.primaries, self.white) for v in xy)
+
+    def to_xyz(self, white: ArrayLike | None = None) -> NDArray[np.float64]:
+        """(3, 3) linear values → XYZ, Y of white = 1, adapted to `white` (3,) if given."""
+        own, matrix = _white(self.white), _to_xyz(self.primaries, self.white)
+        return matrix if white is None else adaptation(own, white) @ matrix
 
     @cached_property
     def matrix(self) -> NDArray[np.float64]:
@@ -166,7 +185,7 @@ ALIASES = {
 def rgb_space(name: str) -> RGBSpace:
     """The space called `name`, or an alias of it, in either case; CutisError lists them."""
     wanted = ALIASES.get(name.strip().lower(), name.strip()).lower()
-    for space in SPACES:
+    for space in (*SPACES, ACES2065_1):
         if space.name.lower() == wanted:
             return space
     raise CutisError(

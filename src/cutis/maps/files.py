@@ -27,6 +27,8 @@ from cutis.maps.skin_maps import SkinMaps
 from cutis.optics import NAMES, PARAMETERS, Parameter
 
 PREFIX = "cutis:"
+PATHS = ("source", "source_ocio")
+"""Provenance that names files: whole in memory, as seen from the folder of the maps when stored."""
 ORIGINAL = "original."
 """Before the names of maps as they were before edits; maps that are the same are left out."""
 
@@ -64,7 +66,7 @@ def maps_writer(
     if like.edits:
         header[f"{PREFIX}edits"] = json.dumps(list(zip(like.edits, like.clamped, strict=True)))
     for key, value in like.provenance.items():
-        header[f"{PREFIX}{key}"] = _from_folder(value, path) if key == "source" else value
+        header[f"{PREFIX}{key}"] = _from_folder(value, path) if key in PATHS else value
     if dtype not in ("float", "half"):
         raise CutisError(f"maps are stored as float or half, not {dtype}")
     names = (*NAMES, "mask", *(ORIGINAL + name for name in changed))
@@ -123,6 +125,9 @@ class MapsFile:
         self.clamped = tuple(clamped for _, clamped in edits)
         self.model = notes.pop("model", "default")
         self.provenance = {key: value for key, value in notes.items() if key not in NAMES}
+        config = self.provenance.get("source_ocio")
+        if config and "://" not in config:
+            self.provenance["source_ocio"] = os.path.join(self.path.resolve().parent, config)
 
     def __enter__(self) -> Self:
         return self
@@ -252,13 +257,16 @@ def source_note(source: textures.TextureFile | textures.Texture) -> dict[str, st
         "source_colorspace": source.space.name if source.origin == "given" else "auto",
     }
     config = getattr(source.space, "config", None)
-    return {**note, "source_ocio": config} if config and source.origin == "given" else note
+    if not config or source.origin != "given":
+        return note
+    return {**note, "source_ocio": config if "://" in config else Path(config).resolve().as_posix()}
 
 
 def open_source(provenance: Mapping[str, str], capture: Path) -> textures.TextureFile:
     """The capture that maps were made from, opened and understood as it was then."""
     space = provenance.get("source_colorspace", "auto")
-    return textures.TextureFile(capture, space, provenance.get("source_ocio"))
+    # the configuration of then, or none: $OCIO may have changed since
+    return textures.TextureFile(capture, space, provenance.get("source_ocio", ""))
 
 
 def find_source(provenance: Mapping[str, str], maps_path: Path, given: Path | None = None) -> Path:

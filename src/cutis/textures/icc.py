@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cutis.colour.spaces import LINEAR, SPACES, SRGB, Space, adapted
+from cutis.colour.spaces import ACES2065_1, SPACES, Space, adapted
 
 D50 = (0.9642, 1.0, 0.8249)
 """XYZ of the white that profiles are written for."""
@@ -58,7 +58,8 @@ def icc_space(profile: bytes) -> Space:
     (printers), or are damaged.
     """
     try:
-        return _parse(profile)
+        with np.errstate(all="ignore"):  # of damaged ones; what comes of it is looked at
+            return _parse(profile)
     except (struct.error, IndexError, UnicodeDecodeError) as error:
         raise ValueError("damaged") from error
 
@@ -75,29 +76,30 @@ def _parse(profile: bytes) -> Space:
     wanted = [c + t for t in (b"XYZ", b"TRC") for c in (b"r", b"g", b"b")]
     if connection != b"XYZ " or any(not tags.get(name) for name in wanted):
         raise ValueError("a table instead of a matrix and curves")
-    columns = [_fixed(tags[c + b"XYZ"][8:20]) for c in (b"r", b"g", b"b")]
+    columns = [_fixed(tags[c + b"XYZ"][8:], 3) for c in (b"r", b"g", b"b")]
     matrix = adapted(np.stack(columns, axis=-1), D50)
+    matrix /= matrix.sum(axis=1, keepdims=True)  # rounding must not tint greys
     if not np.isfinite(matrix).all() or abs(np.linalg.det(matrix)) < 1e-6:
         raise ValueError("damaged")
-    matrix /= matrix.sum(axis=1, keepdims=True)  # rounding must not tint greys
     curves = tuple(_curve(tags[c + b"TRC"]) for c in (b"r", b"g", b"b"))
     found = IccSpace(_description(tags.get(b"desc", b"")), matrix, curves)
     return _known(found)
 
 
 def _known(found: IccSpace) -> Space:
-    """One of our own spaces if the profile gives its colours to a thousandth."""
+    """One of our own spaces if the profile gives its colours to two thousandths."""
     steps = np.linspace(0, 1, 18)
     values = np.stack(np.meshgrid(steps, steps, steps), axis=-1).reshape(-1, 3)
     theirs = found.to_linear_srgb(values)
-    for space in (SRGB, LINEAR, *SPACES):
+    for space in (*SPACES, ACES2065_1):
         if np.abs(space.to_linear_srgb(values) - theirs).max() < 2e-3:
             return space
     return found
 
 
-def _fixed(data: bytes) -> NDArray[np.float64]:
-    return np.frombuffer(data, ">i4").astype(np.float64) / 65536
+def _fixed(data: bytes, count: int) -> NDArray[np.float64]:
+    """The first `count` numbers of 15 + 16 bits."""
+    return np.array(struct.unpack(f">{count}i", data[: 4 * count])) / 65536
 
 
 def _description(tag: bytes) -> str:
@@ -123,8 +125,10 @@ def _curve(tag: bytes) -> tuple[Curve, Curve]:
     if count < 2:
         gamma = 1.0 if count == 0 else struct.unpack(">H", tag[12:14])[0] / 256
         return _power(gamma, 1.0, 0.0, 0.0, -1.0, 0.0, 0.0)
-    table = np.frombuffer(tag[12 : 12 + 2 * count], ">u2").astype(np.float64) / 65535
-    if len(table) != count or (np.diff(table) < 0).any() or table[-1] <= table[0]:
+    if len(tag) < 12 + 2 * count:
+        raise ValueError("damaged")
+    table = np.frombuffer(tag, ">u2", count, 12).astype(np.float64) / 65535
+    if (np.diff(table) < 0).any() or table[-1] <= table[0]:
         raise ValueError("damaged")
     places = np.linspace(0, 1, count)
     # where the table is flat, the inverse takes the last place of the value
@@ -138,9 +142,7 @@ def _parametric(tag: bytes) -> tuple[Curve, Curve]:
     (kind,) = struct.unpack(">H", tag[8:10])
     if kind > 4:
         raise ValueError("made of curves of an unknown kind")
-    values = _fixed(tag[12 : 12 + 4 * (1, 3, 4, 5, 7)[kind]])
-    if len(values) != (1, 3, 4, 5, 7)[kind]:
-        raise ValueError("damaged")
+    values = _fixed(tag[12:], (1, 3, 4, 5, 7)[kind])
     g, a, b, c, d, e, f = [float(v) for v in values] + [0.0] * (7 - len(values))
     if kind == 0:
         return _power(g, 1.0, 0.0, 0.0, -1.0, 0.0, 0.0)

@@ -1,37 +1,50 @@
 """Colour spaces of OpenColorIO configurations: names, aliases and roles."""
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cutis.colour.spaces import ACES2065_1, rgb_space
+from cutis.colour.spaces import (
+    ACES2065_1,
+    LINEAR,
+    SPACES,
+    RGBSpace,
+    Space,
+    chromaticities_of,
+)
 from cutis.errors import CutisError
 
 BUILT_IN = "ocio://studio-config-v2.2.0_aces-v1.3_ocio-v2.4"
 """The configuration when none is given, by its full name: `default` changes with releases."""
-ROLE = "aces_interchange"
-"""The role by which configurations say which of their spaces is ACES2065-1."""
+BRIDGES: tuple[tuple[RGBSpace, tuple[str, ...]], ...] = (
+    (ACES2065_1, ("aces_interchange", "aces2065_1", "ACES2065-1", "ACES - ACES2065-1")),
+    (LINEAR, ("lin_rec709", "Linear Rec.709 (sRGB)", "Utility - Linear - sRGB", "lin_srgb")),
+)
+"""Spaces of ours, and what configurations call them; the first is the role made for this."""
+SAME = 1e-5
+"""Spaces whose linear colours differ by less are one: configurations round their matrices."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class OcioSpace:
     """A space of a configuration; `to` and `back` are OpenColorIO processors.
 
-    They connect it with `connection`, a space that we know, in float32. `config` is its
-    configuration, None for BUILT_IN.
+    They connect it with `connection`, a space of ours, in float32. `config` is its configuration,
+    None for BUILT_IN. Spaces of one name and configuration are equal. `chromaticities` are those of
+    linear spaces, adapted to D65.
     """
 
     name: str
     encoded: bool
-    to: Any
-    back: Any
-    connection: Any
+    to: Any = field(compare=False)
+    back: Any = field(compare=False)
+    connection: RGBSpace = field(compare=False)
     config: str | None = None
-    chromaticities: None = None
+    chromaticities: tuple[float, ...] | None = field(default=None, compare=False)
 
     def to_linear_srgb(self, values: ArrayLike) -> NDArray[np.floating]:
         """(..., 3) stored values → linear sRGB, float32."""
@@ -43,11 +56,12 @@ class OcioSpace:
 
 
 def _applied(processor: Any, values: ArrayLike) -> NDArray[np.float32]:
-    colours = np.array(values, np.float32, order="C")  # a copy: processors work in place
+    # a copy, since processors work in place, and in rows, since they take nothing else
+    colours = np.array(values, dtype=np.float32, order="C")
     flat = colours.reshape(-1, 3)
     if len(flat):
         processor.applyRGB(flat)
-    return flat.reshape(colours.shape)
+    return colours
 
 
 def configured() -> str | None:
@@ -55,55 +69,89 @@ def configured() -> str | None:
     return os.environ.get("OCIO") or None
 
 
-def ocio_space(name: str, config: str | None = None) -> OcioSpace | None:
+@lru_cache(maxsize=64)
+def ocio_space(name: str, config: str | None = None) -> Space | None:
     """The space called `name`, a role or an alias in `config`, or in BUILT_IN.
 
-    None where there is no such space, or no OpenColorIO and no `config`. Raises CutisError for a
-    configuration that cannot be read, and for spaces that are not colour.
+    One of `colour.SPACES` where it is the same. None where there is no such space, or no
+    OpenColorIO and no `config`. Raises CutisError for a configuration that cannot be read, and for
+    spaces that are not colour or go one way only.
     """
     try:
         import PyOpenColorIO as ocio
     except ModuleNotFoundError:
         if config is None:
             return None
-        raise CutisError("OpenColorIO is missing; pip install opencolorio") from None
+        raise CutisError(
+            f"{config} needs OpenColorIO: pip install opencolorio, or do without $OCIO and --ocio"
+        ) from None
     known = _config(config or BUILT_IN)
     space = known.getColorSpace(name)
     if space is None:
         return None
     if space.isData():
         raise CutisError(f"{space.getName()} holds data, not colour; name a colour space")
-    connection, here = _connection(known)
+    connection, here = _connection(known, config or BUILT_IN)
     lossless = ocio.OPTIMIZATION_LOSSLESS
     try:
         to = known.getProcessor(space.getName(), here).getOptimizedCPUProcessor(lossless)
         back = known.getProcessor(here, space.getName()).getOptimizedCPUProcessor(lossless)
     except ocio.Exception as error:
-        raise CutisError(f"{name}: OpenColorIO cannot convert it both ways ({error})") from error
-    grey = np.array([[0.2, 0.2, 0.2], [0.4, 0.4, 0.4]], np.float32)
-    to.applyRGB(grey)
-    linear = abs(grey[1, 1] - 2 * grey[0, 1]) < 1e-4 * abs(grey[1, 1])
-    return OcioSpace(space.getName(), not linear, to, back, connection, config)
+        reason = str(error).splitlines()[0]
+        raise CutisError(f"{name}: OpenColorIO cannot convert it both ways ({reason})") from error
+    found = OcioSpace(space.getName(), True, to, back, connection, config)
+    return _ours(found) or _described(found)
 
 
-def ocio_names(config: str | None = None) -> list[str]:
-    """Names of the colour spaces of a configuration; empty without OpenColorIO."""
+def _ours(found: OcioSpace) -> RGBSpace | None:
+    """The space of ours that gives the same colours, if any."""
+    steps = np.linspace(0, 1, 9, dtype=np.float32)
+    values = np.stack(np.meshgrid(steps, steps, steps), axis=-1).reshape(-1, 3)
+    theirs = found.to_linear_srgb(values)
+    for space in (*SPACES, ACES2065_1):
+        if np.abs(space.to_linear_srgb(values) - theirs).max() < SAME:
+            return space
+    return None
+
+
+def _described(found: OcioSpace) -> OcioSpace:
+    """The space with what its colours say: whether it is linear, and of which chromaticities."""
+    units = np.eye(3, dtype=np.float32)
+    levels = np.array([0, 1e-3, 0.02, 0.18, 0.5, 1, 4], dtype=np.float32)
+    matrix = found.to_linear_srgb(units)
+    expected = levels[:, None, None] * matrix
+    measured = found.to_linear_srgb(levels[:, None, None] * units)
+    if np.abs(measured - expected).max() > 1e-4 * np.abs(expected).max():
+        return found
+    return OcioSpace(
+        found.name, False, found.to, found.back, found.connection, found.config,
+        chromaticities_of(matrix.T),
+    )  # fmt: skip
+
+
+def ocio_names(config: str | None = None) -> tuple[list[str], list[str]]:
+    """Names of the colour spaces of a configuration, and its aliases and roles.
+
+    Nothing without OpenColorIO.
+    """
     try:
-        return list(_config(config or BUILT_IN).getColorSpaceNames())
+        known = _config(config or BUILT_IN)
     except ModuleNotFoundError:
-        return []
+        return [], []
+    spaces = [space for space in known.getColorSpaces() if not space.isData()]
+    aliases = [alias for space in spaces for alias in space.getAliases()]
+    return [space.getName() for space in spaces], [*aliases, *(r for r, _ in known.getRoles())]
 
 
-def _connection(known: Any) -> tuple[Any, str]:
+def _connection(known: Any, config: str) -> tuple[RGBSpace, str]:
     """A space of our own and its name in the configuration."""
-    if known.hasRole(ROLE):
-        return ACES2065_1, ROLE
-    for alias in ("lin_rec709", "Linear Rec.709 (sRGB)", "Utility - Linear - sRGB", "lin_srgb"):
-        if known.getColorSpace(alias) is not None:
-            return rgb_space("linear"), alias
+    for space, names in BRIDGES:
+        for name in names:
+            if known.getColorSpace(name) is not None:
+                return space, name
     raise CutisError(
-        f"this OpenColorIO configuration has neither the role {ROLE} nor a linear Rec.709; "
-        "give another with --ocio"
+        f"{config}: has neither the role aces_interchange nor a linear Rec.709, so that its "
+        "colours cannot be told; give another configuration with --ocio"
     )
 
 

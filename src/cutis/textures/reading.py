@@ -52,7 +52,9 @@ class TextureFile:
         self._checked = rgb if alpha is None else [*rgb, alpha]
         self.associated = alpha is not None and not spec.get_int_attribute("oiio:UnassociatedAlpha")
         if colorspace == "auto":
-            self.space, self.origin = declared_space(spec, self._source.dtype.kind == "f")
+            self.space, self.origin = declared_space(
+                spec, self.format, self._source.dtype.kind == "f"
+            )
         else:
             self.space, self.origin = colour_space(colorspace, ocio), "given"
 

@@ -11,9 +11,11 @@ import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
 
-from cutis.colour.spaces import Space
+from cutis.colour.spaces import LINEAR, SRGB, RGBSpace, Space
 from cutis.textures.encoding import Encoder, encoder
+from cutis.textures.icc import IccSpace
 from cutis.textures.problem import problem
+from cutis.textures.profile import icc_profile
 from cutis.textures.spaces import sibling
 from cutis.textures.texture import Texture, bands, colour_channels, from_unit, to_unit
 
@@ -33,7 +35,7 @@ _STORED_AS = {
     "jpeg": {"uint16": "uint8", "float16": "uint8", "float32": "uint8"},
     "tiff": {"float16": "float32"},
     "openexr": {"uint8": "float16", "uint16": "float32"},
-    "tx": {},
+    "tx": {"float16": "float32"},
     "dpx": {"float16": "uint16", "float32": "uint16"},
 }
 _MOST_CHANNELS = {"png": 4, "jpeg": 3, "dpx": 4}
@@ -47,13 +49,22 @@ _LOSSLESS = {
 _PRIVATE = (
     *(f"{name}:.*" for name in ("tiff", "png", "jpeg", "openexr", "oiio", "dpx", "psd")),
     *("compression", "planarconfig", "name", "screenWindow.*"),
-    *("textureformat", "wrapmodes", "fovcot", "thumbnail.*"),
+    "thumbnail.*",
+)
+# What is true of a whole texture with its MIP levels, and of the colours it had.
+_MIP = (
+    *("textureformat", "wrapmodes", "fovcot", "oiio:miplevels"),
+    *("oiio:SHA-1", "oiio:AverageColor", "oiio:ConstantColor"),
 )
 # What says which space the colours are in.
 _SPACE = (
     *("ICCProfile", "ICCProfile:.*", "chromaticities", "colorInteropID", "oiio:ColorSpace"),
-    *("dpx:Transfer", "dpx:Colorimetric"),
+    *("oiio:Gamma", "CICP", "dpx:Transfer", "dpx:Colorimetric"),
 )
+# Where profiles go; the others tell a space in their own ways, and DPX hardly any.
+_PROFILED = ("png", "jpeg", "tiff", "tx")
+# These know only colour that is multiplied by alpha.
+_ASSOCIATED = ("openexr", "dpx", "tx")
 
 
 class Source(Protocol):
@@ -79,10 +90,12 @@ def write_texture(
     * PNG and DPX take float as 16 bit sRGB, JPEG everything as 8 bit at quality 98, TIFF float16 as
       float32, OpenEXR uint8 as half and uint16 as float, both made linear and associated;
     * PNG and DPX keep only R, G, B and A, JPEG only R, G, B;
-    * .tx is a TIFF of 64 × 64 tiles with all MIP levels, for renderers;
-    * an ICC profile is kept where the colour space is (OpenEXR holds none, but chromaticities).
+    * .tx is a TIFF of 64 × 64 tiles with all MIP levels, associated, for renderers;
+    * an ICC profile is kept where the colour space is (DPX and OpenEXR hold none, so OpenEXR gets
+      linear values and chromaticities, and DPX sRGB). Other RGB spaces get a profile of ours.
 
-    `space` is the colour space to write; by default that of the texture, linear in OpenEXR.
+    `space` is the colour space to write; by default that of the texture, linear in OpenEXR. 8 bits
+    become 16 where a linear space is asked for.
 
     Of an OpenEXR file of several parts only the first was read, so only that is written. EXIF of
     the camera survives in JPEG and PNG, not in TIFF, where OpenImageIO does not reach it.
@@ -141,15 +154,22 @@ def format_of(path: Path) -> str:
 def _fitted(texture: Texture, file_format: str, wanted: Space | None) -> Texture:
     """The texture as `file_format` can store it; the same one where nothing needs to change."""
     old = texture.pixels.dtype
-    dtype = np.dtype(_STORED_AS[file_format].get(old.name, old.name))
+    same = file_format == texture.format
+    dtype = old if same else np.dtype(_STORED_AS[file_format].get(old.name, old.name))
     space = wanted or texture.space
     if wanted is None and dtype.kind != old.kind:
         space = sibling(space, dtype.kind != "f")
-    if file_format != texture.format:
+    if not same:
+        if wanted is None and file_format == "openexr":
+            space = sibling(space, False)
+        if wanted is None and file_format == "dpx" and isinstance(space, IccSpace):
+            space = SRGB
         texture = _arranged(texture, _MOST_CHANNELS.get(file_format))
+    if dtype == np.uint8 and file_format != "jpeg" and texture.space.encoded and not space.encoded:
+        dtype = np.dtype(np.uint16)
     _, alpha = colour_channels(texture.channels)
     associated = alpha is not None and (
-        file_format == "openexr" or (file_format in ("tiff", "tx") and texture.associated)
+        file_format in _ASSOCIATED or (file_format == "tiff" and texture.associated)
     )
     if (dtype, space, associated) == (old, texture.space, texture.associated):
         return texture
@@ -195,19 +215,18 @@ def _spec(source: Texture, fitted: Texture, file_format: str, height: int) -> oi
     names = [name.lower() for name in fitted.channels]
     spec.alpha_channel = names.index("a") if "a" in names else -1
     spec.z_channel = names.index("z") if "z" in names else -1
-    if not same_format:
-        _erase(spec, _PRIVATE)
+    _erase(spec, _MIP if same_format else (*_MIP, *_PRIVATE))
     if fitted.space != source.space:
         _erase(spec, _SPACE)
-    known = fitted.space.chromaticities
-    untold = same_format and fitted.space == source.space and source.origin.startswith("assumed")
-    if file_format == "openexr" and known is not None and not untold:
-        spec.attribute("chromaticities", oiio.TypeDesc("float[8]"), known)
+    if not same_format or fitted.space != source.space or source.origin == "given":
+        _tell_space(spec, fitted, file_format)
     _erase(spec, ("oiio:UnassociatedAlpha", "oiio:subimages"))
     if not same_format or fitted.pixels.dtype != source.pixels.dtype:
         _erase(spec, ("oiio:BitsPerSample",))
     if spec.alpha_channel >= 0 and not fitted.associated:
         spec.attribute("oiio:UnassociatedAlpha", 1)
+    if file_format == "tiff" and fitted.pixels.dtype == np.float16:
+        spec.attribute("tiff:half", 1)
     if file_format in _LOSSLESS and spec.getattribute("compression") not in _LOSSLESS[file_format]:
         spec.attribute("compression", "zip")
     if file_format == "jpeg":
@@ -215,6 +234,24 @@ def _spec(source: Texture, fitted: Texture, file_format: str, height: int) -> oi
         if not same_format:
             spec.attribute("jpeg:subsampling", "4:4:4")
     return spec
+
+
+def _tell_space(spec: oiio.ImageSpec, fitted: Texture, file_format: str) -> None:
+    """Which space the colours are in, where the format has words for it and none are there."""
+    space, known = fitted.space, fitted.space.chromaticities
+    if file_format == "openexr" and known is not None and not space.encoded:
+        spec.attribute("chromaticities", oiio.TypeDesc("float[8]"), known)
+    if file_format == "dpx" and space == LINEAR:
+        spec.attribute("dpx:Transfer", "Linear")
+    usual = LINEAR if fitted.pixels.dtype.kind == "f" else SRGB
+    if (
+        file_format in _PROFILED
+        and isinstance(space, RGBSpace)
+        and space != usual
+        and spec.getattribute("ICCProfile") is None
+    ):
+        profile = np.frombuffer(icc_profile(space), np.uint8)
+        spec.attribute("ICCProfile", oiio.TypeDesc(f"uint8[{len(profile)}]"), profile)
 
 
 def _erase(spec: oiio.ImageSpec, names: tuple[str, ...]) -> None:
