@@ -8,25 +8,16 @@ import typer
 from cutis.apps import options
 
 
-def _flag(meaning: str) -> typer.models.OptionInfo:
-    return typer.Option(help=f"{meaning}: a value, a factor (x1.5) or an offset (+0.1).")
-
-
-Change = str | None
-
-
 def edit(
     maps: Annotated[Path, typer.Argument(help="Maps that estimate wrote, NAME.skin.exr.")],
     output: Annotated[Path, typer.Option("--output", "-o", help="Edited albedo to write.")],
-    melanin: Annotated[Change, _flag("Melanosome volume fraction")] = None,
-    blood: Annotated[Change, _flag("Blood volume fraction")] = None,
-    thickness: Annotated[Change, _flag("Epidermal thickness in µm")] = None,
-    eumelanin: Annotated[Change, _flag("Eumelanin share of melanin")] = None,
-    oxygenation: Annotated[Change, _flag("Oxygenated share of haemoglobin")] = None,
-    preset: Annotated[
-        list[str] | None, typer.Option(help="A named edit, before the others; may be repeated.")
-    ] = None,
-    amount: Annotated[float, typer.Option(help="Share of the edit to apply, 0 to 1.")] = 1.0,
+    melanin: options.MelaninChange = None,
+    blood: options.BloodChange = None,
+    thickness: options.ThicknessChange = None,
+    eumelanin: options.EumelaninChange = None,
+    oxygenation: options.OxygenationChange = None,
+    preset: options.Presets = None,
+    amount: options.Amount = 1.0,
     mask: options.Mask = None,
     source: Annotated[
         Path | None, typer.Option(help="The capture, if it is not where the maps say.")
@@ -49,21 +40,11 @@ def edit(
     from cutis.apps.console import out, steps
     from cutis.apps.edit_file import Job, edit_file
     from cutis.errors import CutisError
-    from cutis.maps import parse_edit
-    from cutis.maps.presets import preset as named
     from cutis.textures import colour_space, format_of
     from cutis.textures.udim import TOKEN, tile_of, udim_tiles
 
-    flags = {
-        "melanin": melanin,
-        "blood": blood,
-        "thickness": thickness,
-        "eumelanin": eumelanin,
-        "oxygenation": oxygenation,
-    }
     by_tensor = None if method is None else options.method_name(method)
-    edits = [change for name in preset or [] for change in named(name)]
-    edits += [parse_edit(name, text) for name, text in flags.items() if text is not None]
+    edits = options.edits(preset, melanin, blood, thickness, eumelanin, oxygenation)
     format_of(output)  # fails now rather than after the work
     space = None if output_colorspace is None else colour_space(output_colorspace, ocio)
     job = Job(maps, output, tuple(edits), amount, mask, source, by_tensor, space, save_maps)

@@ -6,7 +6,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from cutis.apps import demo, edit, estimate, figures, info, simulate, spectrum, train
+from cutis.apps import demo, edit, estimate, export, figures, info, simulate, spectrum, train
 from cutis.errors import CutisError
 
 app = typer.Typer(
@@ -42,6 +42,7 @@ def _options(
 
 app.command("estimate")(estimate.estimate)
 app.command("edit")(edit.edit)
+app.command("export")(export.export)
 app.command("spectrum")(spectrum.spectrum)
 app.command("simulate")(simulate.simulate)
 app.command("figures")(figures.figures)

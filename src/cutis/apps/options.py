@@ -3,11 +3,14 @@
 import contextlib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
 from cutis.errors import CutisError
+
+if TYPE_CHECKING:
+    from cutis.maps import Edit
 
 Mask = Annotated[
     Path | None, typer.Option("--mask", help="Grey image, white where it applies, same size.")
@@ -45,6 +48,11 @@ Eumelanin = Annotated[float | None, typer.Option("--eumelanin", help="Eumelanin 
 Oxygenation = Annotated[
     float | None, typer.Option("--oxygenation", help="Oxygenated share of haemoglobin.")
 ]
+Presets = Annotated[
+    list[str] | None,
+    typer.Option("--preset", help="A named edit, before the others; may be repeated."),
+]
+Amount = Annotated[float, typer.Option("--amount", help="Share of the edit to apply, 0 to 1.")]
 Skins = Annotated[
     Path | None,
     typer.Argument(help="CSV of skins, a column per parameter; missing ones are typical."),
@@ -72,6 +80,43 @@ Ocio = Annotated[
         "--ocio", help="OpenColorIO configuration; by default $OCIO, else the ACES studio one."
     ),
 ]
+
+
+def _change(name: str, meaning: str) -> typer.models.OptionInfo:
+    return typer.Option(
+        f"--{name}", help=f"{meaning}: a value, a factor (x1.5) or an offset (+0.1)."
+    )
+
+
+MelaninChange = Annotated[str | None, _change("melanin", "Melanosome volume fraction")]
+BloodChange = Annotated[str | None, _change("blood", "Blood volume fraction")]
+ThicknessChange = Annotated[str | None, _change("thickness", "Epidermal thickness in µm")]
+EumelaninChange = Annotated[str | None, _change("eumelanin", "Eumelanin share of melanin")]
+OxygenationChange = Annotated[str | None, _change("oxygenation", "Oxygenated share of haemoglobin")]
+
+
+def edits(
+    presets: Sequence[str] | None,
+    melanin: str | None,
+    blood: str | None,
+    thickness: str | None,
+    eumelanin: str | None,
+    oxygenation: str | None,
+) -> "list[Edit]":
+    """The edits of --preset, in the order given, then those of the five parameter flags."""
+    from cutis.maps import parse_edit
+    from cutis.maps.presets import preset as named
+
+    flags = {
+        "melanin": melanin,
+        "blood": blood,
+        "thickness": thickness,
+        "eumelanin": eumelanin,
+        "oxygenation": oxygenation,
+    }
+    found = [change for name in presets or [] for change in named(name)]
+    found += [parse_edit(name, text) for name, text in flags.items() if text is not None]
+    return found
 
 
 def white_gains(text: str) -> Literal["none", "auto"] | Sequence[float]:
