@@ -20,7 +20,7 @@ def info(maps: Annotated[Path, typer.Argument(help="Maps, NAME.skin.exr.")]) -> 
         found, inside = MapStatistics(), 0
         for rows in file.bands():
             skin = file.rows(rows)
-            found.add(skin.parameters(), skin.mask > 0)
+            found.add(skin.coordinates(), skin.mask > 0)
             inside += int((skin.mask > 0).sum())
         if not inside:
             raise file.no_mask()

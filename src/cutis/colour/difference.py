@@ -9,10 +9,12 @@ from cutis.colour.spectra import XYZ_TO_SRGB
 
 D65_WHITE = (0.3127, 0.3290)
 """Chromaticity x, y of the white of linear sRGB."""
+LIGHTEST_HAIR, PALEST = 35.0, 12.0
+"""L* and C*ab that lie below those of skin that errors are reported on."""
 
 
 @cache
-def _to_relative_xyz() -> NDArray[np.float64]:
+def to_relative_xyz() -> NDArray[np.float64]:
     """(3, 3) linear sRGB → XYZ over that of white."""
     x, y = D65_WHITE
     white = np.array([x / y, 1.0, (1 - x - y) / y])
@@ -32,7 +34,7 @@ def lab(rgb: ArrayLike) -> NDArray[np.float32]:
 
     flat = _flat(rgb)
     result = np.empty(flat.shape, dtype=np.float32)
-    lab_kernel(flat, _to_relative_xyz(), result)
+    lab_kernel(flat, to_relative_xyz(), result)
     return result.reshape(np.shape(rgb))
 
 
@@ -42,7 +44,7 @@ def delta_e(rgb_a: ArrayLike, rgb_b: ArrayLike) -> NDArray[np.float32]:
 
     a, b = _flat(rgb_a), _flat(rgb_b)
     result = np.empty(len(a), dtype=np.float32)
-    delta_e_kernel(a, b, _to_relative_xyz(), result)
+    delta_e_kernel(a, b, to_relative_xyz(), result)
     return result.reshape(np.shape(rgb_a)[:-1])
 
 
@@ -58,4 +60,4 @@ def ita(rgb: ArrayLike) -> NDArray[np.float32]:
 def is_skin_colour(rgb: ArrayLike) -> NDArray[np.bool_]:
     """Texels that colour errors are reported on, L* > 35 and C*ab > 12: (..., 3) → (...)."""
     values = lab(rgb)
-    return (values[..., 0] > 35.0) & (np.hypot(values[..., 1], values[..., 2]) > 12.0)
+    return (values[..., 0] > LIGHTEST_HAIR) & (np.hypot(values[..., 1], values[..., 2]) > PALEST)

@@ -23,7 +23,7 @@ def _f(t: Any) -> Any:
 
 
 @njit(cache=True)
-def _lab(red: Any, green: Any, blue: Any, m: Any) -> Any:
+def relative_lab(red: Any, green: Any, blue: Any, m: Any) -> Any:
     """CIELAB of linear RGB; `m` (3, 3) gives XYZ over that of white."""
     fx = _f(m[0, 0] * red + m[0, 1] * green + m[0, 2] * blue)
     fy = _f(m[1, 0] * red + m[1, 1] * green + m[1, 2] * blue)
@@ -41,7 +41,7 @@ def _hue(b: Any, a: Any) -> Any:
 
 
 @njit(cache=True)
-def _delta_e(l1: Any, a1: Any, b1: Any, l2: Any, a2: Any, b2: Any) -> Any:
+def colour_difference(l1: Any, a1: Any, b1: Any, l2: Any, a2: Any, b2: Any) -> Any:
     """CIEDE2000 with k_L = k_C = k_H = 1; equation numbers of Sharma et al."""
     mean = 0.5 * (math.hypot(a1, b1) + math.hypot(a2, b2))  # (3)
     m7 = mean**7
@@ -88,7 +88,7 @@ def lab_kernel(rgb: Any, m: Any, out: Any) -> None:
     n = rgb.shape[0]
     for block in prange((n + BLOCK - 1) // BLOCK):
         for i in range(block * BLOCK, min(n, (block + 1) * BLOCK)):
-            out[i, 0], out[i, 1], out[i, 2] = _lab(rgb[i, 0], rgb[i, 1], rgb[i, 2], m)
+            out[i, 0], out[i, 1], out[i, 2] = relative_lab(rgb[i, 0], rgb[i, 1], rgb[i, 2], m)
 
 
 @njit(parallel=True, cache=True)
@@ -97,6 +97,6 @@ def delta_e_kernel(one: Any, two: Any, m: Any, out: Any) -> None:
     n = one.shape[0]
     for block in prange((n + BLOCK - 1) // BLOCK):
         for i in range(block * BLOCK, min(n, (block + 1) * BLOCK)):
-            l1, a1, b1 = _lab(one[i, 0], one[i, 1], one[i, 2], m)
-            l2, a2, b2 = _lab(two[i, 0], two[i, 1], two[i, 2], m)
-            out[i] = _delta_e(l1, a1, b1, l2, a2, b2)
+            l1, a1, b1 = relative_lab(one[i, 0], one[i, 1], one[i, 2], m)
+            l2, a2, b2 = relative_lab(two[i, 0], two[i, 1], two[i, 2], m)
+            out[i] = colour_difference(l1, a1, b1, l2, a2, b2)

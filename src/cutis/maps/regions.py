@@ -42,7 +42,7 @@ class Regions:
         inside = (skin.mask > 0) & (labels > 0)
         truth = skin.calibration.apply(skin.source[inside])
         model = skin.calibration.apply(skin.model_albedo[inside])
-        errors, angles, skins = delta_e(model, truth), ita(truth), skin.parameters()[inside]
+        errors, angles, u = delta_e(model, truth), ita(truth), skin.coordinates()
         for label in np.unique(labels[inside]):
             if label not in self._found and len(self._found) == MOST:
                 raise CutisError(
@@ -54,7 +54,7 @@ class Regions:
                 (MapStatistics(), Histogram(0.0, 100.0), Histogram(-180.0, 180.0)),
             )
             here = labels[inside] == label
-            maps.add(skins[here], np.ones(int(here.sum()), bool))
+            maps.add(u, inside & (labels == label))
             differences.add(errors[here])
             typology.add(angles[here])
 

@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cutis.colour import delta_e, is_skin_colour, ita
+from cutis.colour.difference import LIGHTEST_HAIR, PALEST, to_relative_xyz
 from cutis.errors import CutisError
 from cutis.maps.skin_maps import SkinMaps
 from cutis.maps.statistics import Histogram, MapStatistics
-from cutis.optics import NAMES, parameter, to_coordinates
+from cutis.optics import NAMES, parameter
 from cutis.textures.texture import bands
 
 GAMUT_DELTA_E = 1.0
@@ -42,18 +42,17 @@ class Report:
         self._below += int(np.count_nonzero((source < 0).any(axis=1)))
         self._above += int(np.count_nonzero((source > 1).any(axis=1)))
         truth = skin.calibration.apply(source)
-        texels = is_skin_colour(truth)
+        model = skin.calibration.apply(skin.model_albedo[inside])
+        errors, angles, texels = judged(truth, model)
+        self._squares += float(np.sum((model[texels] - truth[texels]) ** 2, dtype=np.float64))
+        self._errors.add(errors[texels])
+        self._beyond += int(np.count_nonzero(errors[texels] > GAMUT_DELTA_E))
+        self._angles.add(angles[texels])
         where = np.zeros(skin.shape, dtype=bool)
         where[inside] = texels
-        truth = truth[texels]
-        model = skin.calibration.apply(skin.model_albedo[where])
-        self._squares += float(np.sum((model - truth) ** 2, dtype=np.float64))
-        errors = delta_e(model, truth)
-        self._errors.add(errors)
-        self._beyond += int(np.count_nonzero(errors > GAMUT_DELTA_E))
-        self._angles.add(ita(truth))
-        self._maps.add(skin.parameters(), inside)
-        self._smoothness.add(skin, where)
+        u = skin.coordinates()
+        self._maps.add(u, inside)
+        self._smoothness.add(u, skin.source, where)
 
     def finish(self) -> dict[str, Any]:
         """The numbers; see `report`."""
@@ -109,6 +108,18 @@ def report(skin: SkinMaps) -> dict[str, Any]:
     return running.finish()
 
 
+def judged(
+    truth: NDArray[np.float32], model: NDArray[np.float32]
+) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_]]:
+    """CIEDE2000 and ITA (n,) of colours (n, 3), where the third says that they are skin's."""
+    from cutis.maps.report_kernel import judge
+
+    errors, angles = np.zeros(len(truth), np.float32), np.zeros(len(truth), np.float32)
+    skin = np.zeros(len(truth), np.bool_)
+    judge(truth, model, to_relative_xyz(), (LIGHTEST_HAIR, PALEST), errors, angles, skin)
+    return errors, angles, skin
+
+
 class Smoothness:
     """Mean neighbour difference of each map over that of the capture, over chosen texels."""
 
@@ -117,19 +128,21 @@ class Smoothness:
         self._last: tuple[NDArray[np.bool_], NDArray[np.floating], NDArray[np.floating]] | None
         self._last = None
 
-    def add(self, skin: SkinMaps, where: NDArray[np.bool_]) -> None:
-        """The next rows, with the texels (h, W) that count."""
-        assert skin.source is not None
-        u = to_coordinates(np.where(where[..., None], skin.parameters(), 1))
-        below = where[:, 1:] & where[:, :-1], where[1:] & where[:-1]
-        for values, total in ((u, self._maps), (skin.source, self._colour)):
-            total += np.abs(np.diff(values, axis=1))[below[0]].sum(axis=0, dtype=np.float64)
-            total += np.abs(np.diff(values, axis=0))[below[1]].sum(axis=0, dtype=np.float64)
+    def add(
+        self, u: NDArray[np.float32], source: NDArray[np.float32], where: NDArray[np.bool_]
+    ) -> None:
+        """The next rows: coordinates (h, W, 5), capture (h, W, 3), texels (h, W) that count."""
+        from cutis.maps.report_kernel import differences
+
+        for values, total in ((u, self._maps), (source, self._colour)):
+            sums = np.empty((len(values), values.shape[2]))
+            differences(np.ascontiguousarray(values), where, sums)
+            total += sums.sum(axis=0)
         if self._last is not None:  # from the last row of what came before to the first of this
             both = self._last[0] & where[0]
             self._maps += np.abs(u[0] - self._last[1])[both].sum(axis=0, dtype=np.float64)
-            self._colour += np.abs(skin.source[0] - self._last[2])[both].sum(axis=0, dtype=float)
-        self._last = where[-1].copy(), u[-1].copy(), skin.source[-1].copy()
+            self._colour += np.abs(source[0] - self._last[2])[both].sum(axis=0, dtype=np.float64)
+        self._last = where[-1].copy(), u[-1].copy(), source[-1].copy()
 
     def finish(self) -> dict[str, float]:
         """The ratio for each map; 0 where the capture is flat."""

@@ -14,7 +14,7 @@ from cutis.inverse.calibration import Calibration
 from cutis.inverse.models import load_model
 from cutis.maps.edits import Edit
 from cutis.maps.patches import patches
-from cutis.maps.statistics import MapStatistics
+from cutis.maps.statistics import MapStatistics, coordinates
 from cutis.optics import NAMES, parameter
 from cutis.textures.texture import Texture, bands
 
@@ -92,6 +92,10 @@ class SkinMaps:
         if "model_albedo" in self.__dict__:  # decoded already
             result.__dict__["model_albedo"] = self.model_albedo[rows]
         return result
+
+    def coordinates(self) -> Map:
+        """(H, W, 5) network coordinates where the mask is not 0, else 0."""
+        return coordinates([getattr(self, name) for name in NAMES], self.mask > 0)
 
     # editing --------------------------------------------------------------------------------
 
@@ -263,6 +267,6 @@ class SkinMaps:
         """(name, unit, 5th percentile, median, 95th percentile) of each map inside the mask."""
         found = MapStatistics()
         for rows in bands(self.shape):
-            found.add(self.parameters(rows), self.mask[rows] > 0)
+            found.add(self.rows(rows).coordinates(), self.mask[rows] > 0)
         for name, (low, median, high) in found.percentiles().items():
             yield name, parameter(name).unit, low, median, high

@@ -5,13 +5,27 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from cutis.optics import NAMES, PARAMETERS, from_coordinates, to_coordinates
+from cutis.optics import NAMES, PARAMETERS, from_coordinates
 
 BINS = 1 << 16
 """Bins over the network coordinate of a map: a percentile is found to 1/131072 of its
 range."""
 SHOWN = 64
 """Bars of the histogram that people see."""
+
+
+def coordinates(
+    maps: Sequence[NDArray[np.float32]], where: NDArray[np.bool_]
+) -> NDArray[np.float32]:
+    """Network coordinates (h, W, 5) of the five maps (h, W) where `where` is True, else 0."""
+    from cutis.maps.report_kernel import coordinates as fill
+
+    root = np.array([p.root for p in PARAMETERS])
+    low = np.array([p.low ** (1 / p.root) for p in PARAMETERS])
+    span = np.array([p.high ** (1 / p.root) for p in PARAMETERS]) - low
+    out = np.empty((*where.shape, 5), np.float32)
+    fill(tuple(maps), where, root, low, span, out)
+    return out
 
 
 class Histogram:
@@ -56,12 +70,11 @@ class MapStatistics:
     def __init__(self) -> None:
         self.counts = np.zeros((len(NAMES), BINS), dtype=np.int64)
 
-    def add(self, skins: NDArray[np.floating], where: NDArray[np.bool_]) -> None:
-        """Counts skins (..., 5) where `where` (...) is True."""
-        u = to_coordinates(skins[where])
-        places = np.clip((u * BINS).astype(np.int64), 0, BINS - 1)
-        for i in range(len(NAMES)):
-            self.counts[i] += np.bincount(places[:, i], minlength=BINS)
+    def add(self, u: NDArray[np.float32], where: NDArray[np.bool_]) -> None:
+        """Counts coordinates (h, W, 5) where `where` (h, W) is True."""
+        from cutis.maps.report_kernel import count
+
+        count(u, where, self.counts)
 
     def percentiles(self, shares: Sequence[float] = (0.05, 0.5, 0.95)) -> dict[str, list[float]]:
         """Values of each map, in its unit, below which these shares of the texels lie."""
