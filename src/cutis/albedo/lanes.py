@@ -22,17 +22,19 @@ FLOAT, INDEX, LANE = ir.FloatType(), ir.IntType(64), ir.IntType(32)
 FLAGS = ("fast",)
 
 
-def _pointer(context: Any, builder: Any, kind: Any, array: Any, place: Any, lanes: int) -> Any:
+def pointer_to(context: Any, builder: Any, kind: Any, array: Any, place: Any, lanes: int) -> Any:
     """To `lanes` floats from element `place` of the array on."""
     data = context.make_array(kind)(context, builder, array).data
     return builder.bitcast(builder.gep(data, [place]), ir.VectorType(FLOAT, lanes).as_pointer())
 
 
-def _shape(context: Any, builder: Any, kind: Any, array: Any) -> Any:
+def shape_of(context: Any, builder: Any, kind: Any, array: Any) -> Any:
+    """Lengths of the array's axes."""
     return cgutils.unpack_tuple(builder, context.make_array(kind)(context, builder, array).shape)
 
 
-def _shuffle(builder: Any, vector: Any, lanes: Sequence[int]) -> Any:
+def shuffle(builder: Any, vector: Any, lanes: Sequence[int]) -> Any:
+    """The vector made of these lanes of `vector`."""
     mask = ir.Constant(ir.VectorType(LANE, len(lanes)), list(lanes))
     return builder.shuffle_vector(vector, ir.Constant(vector.type, ir.Undefined), mask)
 
@@ -44,14 +46,14 @@ def _spread(builder: Any, weights: Any, lanes: int) -> list[Any]:
     vectors = [
         builder.insert_element(empty, w, first) for w in cgutils.unpack_tuple(builder, weights)
     ]
-    return [_shuffle(builder, vector, [0] * lanes) for vector in vectors]
+    return [shuffle(builder, vector, [0] * lanes) for vector in vectors]
 
 
 def _across(builder: Any, vector: Any, lanes: int) -> Any:
     """Sum of the lanes, a power of two, by halves."""
     while lanes > 1:
         lanes //= 2
-        low, high = (_shuffle(builder, vector, range(k, k + lanes)) for k in (0, lanes))
+        low, high = (shuffle(builder, vector, range(k, k + lanes)) for k in (0, lanes))
         vector = builder.fadd(low, high, FLAGS)
     return builder.extract_element(vector, ir.Constant(LANE, 0))
 
@@ -60,7 +62,7 @@ def _around(
     context: Any, builder: Any, kind: Any, table: Any, cell: Any, weights: Any, lanes: int
 ) -> Any:
     """Σ w_p w_q … table[…, i + p, j + q, …] as a vector, innermost axis first."""
-    shape = _shape(context, builder, kind, table)
+    shape = shape_of(context, builder, kind, table)
     corner = cgutils.unpack_tuple(builder, cell)
     spread = [_spread(builder, each, lanes) for each in cgutils.unpack_tuple(builder, weights)]
     bare = len(corner) - len(spread)
@@ -68,7 +70,7 @@ def _around(
     def part(axis: int, place: Any) -> Any:
         if axis == len(corner):
             start = builder.mul(place, shape[-1])
-            pointer = _pointer(context, builder, kind, table, start, lanes)
+            pointer = pointer_to(context, builder, kind, table, start, lanes)
             return builder.load(pointer, align=4, typ=ir.VectorType(FLOAT, lanes))
         node = builder.add(builder.mul(place, shape[axis]), corner[axis])
         if axis < bare:
@@ -96,8 +98,8 @@ def _spline_lanes(lanes: int) -> Callable[..., None]:
             table_, cell_, weights_, out_, row_ = values
             kinds = signature.args
             total = _around(context, builder, kinds[0], table_, cell_, weights_, lanes)
-            start = builder.mul(row_, _shape(context, builder, kinds[3], out_)[-1])
-            pointer = _pointer(context, builder, kinds[3], out_, start, lanes)
+            start = builder.mul(row_, shape_of(context, builder, kinds[3], out_)[-1])
+            pointer = pointer_to(context, builder, kinds[3], out_, start, lanes)
             builder.store(total, pointer, align=4)
             return context.get_dummy_value()
 

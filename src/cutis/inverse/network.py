@@ -7,6 +7,7 @@ Weights are stored as safetensors: `encoder.0.weight` (out, in), `encoder.0.bias
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
 
@@ -21,7 +22,7 @@ LAYERS = 4
 """Fully connected layers of the encoder, and of the decoder."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Perceptron:
     """Fully connected layers: `weights[i]` (out, in) and `biases[i]` (out,), float32."""
 
@@ -35,7 +36,7 @@ class Perceptron:
         x = np.ascontiguousarray(values, dtype=np.float32)
         flat = x.reshape(-1, x.shape[-1])
         out = np.empty((len(flat), len(self.biases[-1])), dtype=np.float32)
-        forward(flat, *self._padded(), out)
+        forward(flat, *self._packed, out)
         return out.reshape(*x.shape[:-1], out.shape[1])
 
     def reference(self, values: ArrayLike) -> NDArray[np.float64]:
@@ -46,16 +47,20 @@ class Perceptron:
             x = np.tanh(x) if i < len(self.weights) - 1 else 1.0 / (1.0 + np.exp(-x))
         return x
 
-    def _padded(self) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.int64]]:
-        """All layers in one array (layers, width, width), biases (layers, width), sizes."""
+    @cached_property
+    def _packed(self) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.int64]]:
+        """Weights (layers, blocks, inputs, OUTPUTS), biases and sizes as the kernel takes them."""
+        from cutis.inverse.dense_lanes import OUTPUTS
+
         sizes = [self.weights[0].shape[1], *(len(b) for b in self.biases)]
-        width = max(sizes)
-        w = np.zeros((len(self.weights), width, width), dtype=np.float32)
-        b = np.zeros((len(self.weights), width), dtype=np.float32)
+        blocks = -(-max(sizes[1:]) // OUTPUTS)
+        w = np.zeros((len(self.weights), max(sizes[:-1]), blocks * OUTPUTS), dtype=np.float32)
+        b = np.zeros((len(self.weights), blocks * OUTPUTS), dtype=np.float32)
         for i, (weight, bias) in enumerate(zip(self.weights, self.biases, strict=True)):
-            w[i, : weight.shape[0], : weight.shape[1]] = weight
+            w[i, : weight.shape[1], : weight.shape[0]] = weight.T
             b[i, : len(bias)] = bias
-        return w, b, np.array(sizes)
+        w = w.reshape(len(w), -1, blocks, OUTPUTS).swapaxes(1, 2)
+        return np.ascontiguousarray(w), b, np.array(sizes)
 
 
 @dataclass(frozen=True)

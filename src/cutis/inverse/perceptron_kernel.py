@@ -1,6 +1,7 @@
 """Compiled forward pass of a small perceptron over many texels.
 
-A tile of texels goes through all layers while it is in the nearest cache. PyPI's Numba has no
+A tile of texels goes through all layers while it is in the nearest cache, a few outputs of each
+layer at a time (`dense_lanes.py`), followed by what their sums go through. PyPI's Numba has no
 vector tanh, so tanh is a rational function (odd, degree 13 over 6, error below 1e-6 in float32,
 the form that Eigen uses), which the compiler vectorises.
 """
@@ -10,8 +11,13 @@ from typing import Any
 import numpy as np
 from numba import njit, prange
 
+from cutis.inverse.dense_lanes import LANES, OUTPUTS, dense_block
+
 TILE = 64
 """Texels that go through the layers together."""
+TASK = 16
+"""Tiles that one task works on."""
+HALF = np.float32(0.5)
 
 P1, P3, P5, P7 = (
     np.float32(4.89352455891786e-03),
@@ -41,44 +47,44 @@ def _tanh(x: Any) -> Any:
     return x * p / (Q0 + s * (Q2 + s * (Q4 + s * Q6)))
 
 
-@njit(fastmath=True, cache=True)
+@njit(fastmath=True, error_model="numpy", cache=True)
 def _tile(x: Any, weights: Any, biases: Any, sizes: Any, out: Any, a: Any, b: Any) -> None:
     n = x.shape[0]
-    half = np.float32(0.5)
-    for i in range(sizes[0]):
-        for t in range(n):
+    for t in range(n):
+        for i in range(sizes[0]):
             a[i, t] = x[t, i]
     last = weights.shape[0] - 1
     for layer in range(last + 1):
-        for o in range(sizes[layer + 1]):
-            row = b[o]
-            bias = biases[layer, o]
-            for t in range(TILE):
-                row[t] = bias
-            for i in range(sizes[layer]):
-                w = weights[layer, o, i]
-                source = a[i]
-                for t in range(TILE):
-                    row[t] += w * source[t]
-            if layer < last:
-                for t in range(TILE):
-                    row[t] = _tanh(row[t])
-            else:  # sigmoid(x) = ½ + ½ tanh(x / 2)
-                for t in range(TILE):
-                    row[t] = half + half * _tanh(half * row[t])
+        outputs = sizes[layer + 1]
+        for block in range((outputs + OUTPUTS - 1) // OUTPUTS):
+            for first in range(0, TILE, LANES):
+                dense_block(weights[layer], biases[layer], block, sizes[layer], a, first, b)
+            for o in range(block * OUTPUTS, min(outputs, (block + 1) * OUTPUTS)):
+                row = b[o]
+                if layer < last:
+                    for t in range(TILE):
+                        row[t] = _tanh(row[t])
+                else:  # sigmoid(x) = ½ + ½ tanh(x / 2)
+                    for t in range(TILE):
+                        row[t] = HALF + HALF * _tanh(HALF * row[t])
         a, b = b, a
-    for o in range(out.shape[1]):
-        for t in range(n):
+    for t in range(n):
+        for o in range(out.shape[1]):
             out[t, o] = a[o, t]
 
 
 @njit(parallel=True, fastmath=True, cache=True)
 def forward(x: Any, weights: Any, biases: Any, sizes: Any, out: Any) -> None:
-    """Fills out (n, outputs) from x (n, inputs); layers padded to one width."""
-    n, width = x.shape[0], weights.shape[1]
+    """Fills out (n, outputs) from x (n, inputs).
+
+    `weights` (layers, blocks, inputs, OUTPUTS) and `biases` (layers, blocks · OUTPUTS) are padded
+    with zeros to one size; `sizes` are the inputs of each layer and the outputs of the last.
+    """
+    n, width = x.shape[0], max(weights.shape[2], biases.shape[1])
     tiles = (n + TILE - 1) // TILE
-    for tile in prange(tiles):
+    for task in prange((tiles + TASK - 1) // TASK):
         a = np.zeros((width, TILE), dtype=np.float32)
         b = np.zeros((width, TILE), dtype=np.float32)
-        low, high = tile * TILE, min(n, tile * TILE + TILE)
-        _tile(x[low:high], weights, biases, sizes, out[low:high], a, b)
+        for tile in range(task * TASK, min(tiles, (task + 1) * TASK)):
+            low, high = tile * TILE, min(n, tile * TILE + TILE)
+            _tile(x[low:high], weights, biases, sizes, out[low:high], a, b)
