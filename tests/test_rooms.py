@@ -25,7 +25,13 @@ ROOMS = (
 """A room may import itself, those before it and SHARED."""
 SHARED = {"errors"}
 """Modules of the package's root that every room may import; they import no room."""
-SLOW = {"torch": {"inverse.training"}, "colour": set(), "matplotlib": set()}
+SLOW = {
+    "torch": {"inverse.training"},
+    "colour": set(),
+    "matplotlib": set(),
+    "onnx": set(),
+    "onnxruntime": set(),
+}
 """Packages imported only inside functions, and the modules exempt from that."""
 NOT_ROOMS = {"data"}
 TESTS_OF_NO_ROOM = {"validation"}

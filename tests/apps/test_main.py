@@ -16,7 +16,7 @@ COMMANDS = sorted(command.name for command in app.registered_commands)
 
 def test_the_commands():
     assert COMMANDS == [
-        "demo", "edit", "estimate", "figures", "info", "simulate", "spectrum", "train"
+        "bench", "demo", "edit", "estimate", "figures", "info", "simulate", "spectrum", "train"
     ]  # fmt: skip
 
 

@@ -6,7 +6,18 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from cutis.apps import demo, edit, estimate, export, figures, info, simulate, spectrum, train
+from cutis.apps import (
+    bench,
+    demo,
+    edit,
+    estimate,
+    export,
+    figures,
+    info,
+    simulate,
+    spectrum,
+    train,
+)
 from cutis.errors import CutisError
 
 app = typer.Typer(
@@ -48,6 +59,7 @@ app.command("simulate")(simulate.simulate)
 app.command("figures")(figures.figures)
 app.command("info")(info.info)
 app.command("train")(train.train)
+app.command("bench")(bench.bench)
 app.command("demo")(demo.demo)
 
 

@@ -17,7 +17,7 @@ def judge(
 ) -> None:
     """Fills skin (n,), and where that is True errors in CIEDE2000 and angles, ITA in degrees.
 
-    Of pairs of linear RGB (n, 3), where truth decides what is skin. `least` are the L* and C*ab that
+    Of pairs of linear RGB (n, 3), where truth decides what is skin. `least` are L* and C*ab that
     skin lies above, `matrix` (3, 3) gives XYZ over that of white.
     """
     n = truth.shape[0]
