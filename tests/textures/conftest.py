@@ -1,8 +1,10 @@
 """Image files made by OpenImageIO, and by hand where it would not make them."""
 
+import runpy
 import struct
 import zlib
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import OpenImageIO as oiio
@@ -129,3 +131,18 @@ def one_line():
         return message
 
     return check
+
+
+@pytest.fixture(scope="session")
+def icc():
+    """What profiles.py holds: ICC profiles from their tags."""
+    return SimpleNamespace(**runpy.run_path(str(Path(__file__).with_name("profiles.py"))))
+
+
+@pytest.fixture(scope="session")
+def measured_rgb(shared_data):
+    """(n, 3) linear sRGB of measured skins, float32."""
+    from cutis.colour import reflectance_to_rgb
+    from cutis.figures.measured import BANDS, measured_skins
+
+    return reflectance_to_rgb(measured_skins(shared_data), BANDS).astype(np.float32)

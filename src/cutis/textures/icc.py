@@ -15,6 +15,8 @@ from cutis.colour.spaces import ACES2065_1, SPACES, Space, adapted
 
 D50 = (0.9642, 1.0, 0.8249)
 """XYZ of the white that profiles are written for."""
+STEEPEST = 16.0
+"""Exponents beyond are no tone curve, and floating-point numbers would not hold their values."""
 Curve = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
 
@@ -22,7 +24,7 @@ Curve = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 class IccSpace:
     """An RGB space as a profile describes it: curves, then `matrix` (3, 3) to linear sRGB.
 
-    Of curves given as tables, values beyond 0 to 1 take the ends.
+    Curves given as tables are odd about 0, and values above 1 take their end.
     """
 
     name: str
@@ -103,14 +105,13 @@ def _fixed(data: bytes, count: int) -> NDArray[np.float64]:
 
 
 def _description(tag: bytes) -> str:
-    if tag[:4] == b"desc":
+    text = ""
+    if tag[:4] == b"desc" and len(tag) >= 12:
         (size,) = struct.unpack(">I", tag[8:12])
         text = tag[12 : 12 + size].decode("ascii", "replace")
-    elif tag[:4] == b"mluc":
+    elif tag[:4] == b"mluc" and len(tag) >= 28:
         size, offset = struct.unpack(">II", tag[20:28])
         text = tag[offset : offset + size].decode("utf-16-be", "replace")
-    else:
-        text = ""
     shown = "".join(c for c in text if c.isprintable()).strip()[:60]
     return shown or "its ICC profile"
 
@@ -131,10 +132,15 @@ def _curve(tag: bytes) -> tuple[Curve, Curve]:
     if (np.diff(table) < 0).any() or table[-1] <= table[0]:
         raise ValueError("damaged")
     places = np.linspace(0, 1, count)
-    # where the table is flat, the inverse takes the last place of the value
-    rising = np.append(np.diff(table) > 0, True)
-    return (lambda x: np.interp(x, places, table),
-            lambda y: np.interp(y, table[rising], places[rising]))  # fmt: skip
+    if table[0] > 0:
+        return lambda x: np.interp(x, places, table), lambda y: np.interp(y, table, places)
+    return lambda x: _mirrored(x, places, table), lambda y: _mirrored(y, table, places)
+
+
+def _mirrored(
+    x: NDArray[np.float64], places: NDArray[np.float64], values: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    return np.copysign(np.interp(np.abs(x), places, values), x)
 
 
 def _parametric(tag: bytes) -> tuple[Curve, Curve]:
@@ -155,7 +161,7 @@ def _parametric(tag: bytes) -> tuple[Curve, Curve]:
 def _power(
     g: float, a: float, b: float, c: float, d: float, e: float, f: float
 ) -> tuple[Curve, Curve]:
-    if not (g > 0 and a > 0 and np.isfinite([g, a, b, c, d, e, f]).all()):
+    if not (0 < g <= STEEPEST and a > 0):
         raise ValueError("damaged")
 
     def forth(x: NDArray[np.float64]) -> NDArray[np.float64]:

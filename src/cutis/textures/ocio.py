@@ -27,6 +27,7 @@ BRIDGES: tuple[tuple[RGBSpace, tuple[str, ...]], ...] = (
 """Spaces of ours, and what configurations call them; the first is the role made for this."""
 SAME = 1e-5
 """Spaces whose linear colours differ by less are one: configurations round their matrices."""
+_HUGE = np.float32(1e30)
 
 
 @dataclass(frozen=True)
@@ -61,7 +62,7 @@ def _applied(processor: Any, values: ArrayLike) -> NDArray[np.float32]:
     flat = colours.reshape(-1, 3)
     if len(flat):
         processor.applyRGB(flat)
-    return colours
+    return np.clip(colours, -_HUGE, _HUGE, out=colours)  # beyond the range of a log space
 
 
 def configured() -> str | None:
@@ -79,7 +80,7 @@ def ocio_space(name: str, config: str | None = None) -> Space | None:
     """
     try:
         import PyOpenColorIO as ocio
-    except ModuleNotFoundError:
+    except ImportError:
         if config is None:
             return None
         raise CutisError(
@@ -96,7 +97,7 @@ def ocio_space(name: str, config: str | None = None) -> Space | None:
     try:
         to = known.getProcessor(space.getName(), here).getOptimizedCPUProcessor(lossless)
         back = known.getProcessor(here, space.getName()).getOptimizedCPUProcessor(lossless)
-    except ocio.Exception as error:
+    except (ocio.Exception, ocio.ExceptionMissingFile) as error:
         reason = str(error).splitlines()[0]
         raise CutisError(f"{name}: OpenColorIO cannot convert it both ways ({reason})") from error
     found = OcioSpace(space.getName(), True, to, back, connection, config)
@@ -136,7 +137,7 @@ def ocio_names(config: str | None = None) -> tuple[list[str], list[str]]:
     """
     try:
         known = _config(config or BUILT_IN)
-    except ModuleNotFoundError:
+    except ImportError:
         return [], []
     spaces = [space for space in known.getColorSpaces() if not space.isData()]
     aliases = [alias for space in spaces for alias in space.getAliases()]
@@ -160,9 +161,7 @@ def _config(path: str) -> Any:
     import PyOpenColorIO as ocio
 
     try:
-        config = ocio.Config.CreateFromFile(path)
-        config.validate()
-    except (ocio.Exception, UnicodeError) as error:
+        return ocio.Config.CreateFromFile(path)
+    except (ocio.Exception, ocio.ExceptionMissingFile, UnicodeError) as error:
         text = str(error).splitlines()[0]
         raise CutisError(f"{path}: not a usable OpenColorIO configuration ({text})") from error
-    return config
