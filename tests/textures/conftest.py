@@ -102,6 +102,36 @@ def write_tiff(path, width, height, samples, bits=8, photometric=2, **more):
     return path
 
 
+def write_psd(path, pixels, mode=3, layer=b"", resources=b""):
+    """A PSD of nothing but the merged picture (H, W, C); with a `layer` its fourth is alpha."""
+    height, width, count = pixels.shape
+    depth = 8 * pixels.dtype.itemsize
+    kind = {8: ">u1", 16: ">u2", 32: ">f4"}[depth]
+    header = b"8BPS" + struct.pack(">H6xHIIHH", 1, count, height, width, depth, mode)
+    if layer:
+        layer = layer.ljust(-(-len(layer) // 2) * 2, b"\0")
+        layer = struct.pack(">I", len(layer)) + layer + bytes(4)
+    parts = (b"", resources, layer)
+    body = b"".join(struct.pack(">I", len(part)) + part for part in parts)
+    Path(path).write_bytes(
+        header + body + b"\0\0" + np.moveaxis(pixels, -1, 0).astype(kind).tobytes()
+    )
+    return path
+
+
+def psd_block(number, data):
+    """An image resource of a PSD."""
+    return b"8BIM" + struct.pack(">HHI", number, 0, len(data)) + data + bytes(len(data) % 2)
+
+
+def psd_layer():
+    """One empty layer; their number is negative, which says that the merged picture has alpha."""
+    channels = b"".join(struct.pack(">hI", channel, 2) for channel in (0, 1, 2, -1))
+    record = bytes(16) + struct.pack(">H", 4) + channels + b"8BIMnorm" + bytes([255, 0, 8, 0])
+    extra = bytes(8) + b"\3top"
+    return struct.pack(">h", -1) + record + struct.pack(">I", len(extra)) + extra + bytes(8)
+
+
 @pytest.fixture(scope="session")
 def make():
     """The writers, and the reader to check with."""
@@ -111,6 +141,9 @@ def make():
         read = staticmethod(read_image)
         png = staticmethod(write_png)
         tiff = staticmethod(write_tiff)
+        psd = staticmethod(write_psd)
+        psd_block = staticmethod(psd_block)
+        psd_layer = staticmethod(psd_layer)
 
     return Make
 

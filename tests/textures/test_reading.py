@@ -1,6 +1,7 @@
 import base64
 import contextlib
 import os
+import struct
 import sys
 
 import numpy as np
@@ -332,3 +333,45 @@ def test_flipped_bytes_never_raise_anything_else(whole, which, flips):
     cut.write_bytes(flipped)
     with contextlib.suppress(CutisError):
         read_texture(cut).linear()
+
+
+@pytest.mark.parametrize("dtype", ["uint8", "uint16", "float32"])
+def test_psd(tmp_path, make, random, icc, dtype):
+    """The merged picture, its density and profile; spare channels (masks) are not colour."""
+    pixels = pixels_of(random, dtype, (12, 17, 4))
+    density = struct.pack(">IHHIHH", 300 << 16, 1, 1, 300 << 16, 1, 1)
+    profile = icc.profile(icc.ADOBE)
+    resources = make.psd_block(1005, density) + make.psd_block(1039, profile)
+    path = make.psd(tmp_path / "a.psd", pixels, resources=resources)
+    one = read_texture(path)
+    assert np.array_equal(one.pixels, pixels[..., :3])
+    assert (one.space.name, one.alpha()) == ("by hand", None)
+    write_texture(one, tmp_path / "b.tif")
+    back, spec = make.read(tmp_path / "b.tif")
+    assert np.array_equal(back, pixels[..., :3])
+    assert (spec.getattribute("XResolution"), spec.getattribute("ResolutionUnit")) == (300, "in")
+    assert bytes(bytearray(spec.getattribute("ICCProfile"))) == profile
+
+
+def test_psd_with_transparency(tmp_path, make):
+    """Straight, without the white that the merged picture has under it."""
+    stored = np.zeros((2, 3, 4), np.uint8)
+    stored[..., :3], stored[..., 3] = (200, 230, 255), [255, 128, 0]
+    one = read_texture(make.psd(tmp_path / "a.psd", stored, layer=make.psd_layer()))
+    assert not one.associated
+    assert one.pixels[0].tolist() == [[200, 230, 255, 255], [145, 205, 255, 128], [0, 0, 0, 0]]
+
+
+@pytest.mark.parametrize(
+    ("mode", "count", "match"), [(4, 4, "CMYK"), (1, 1, "grey"), (9, 3, "color mode 9")]
+)
+def test_psd_of_other_colour(tmp_path, make, one_line, mode, count, match):
+    path = make.psd(tmp_path / "a.psd", np.zeros((4, 4, count), np.uint8), mode)
+    refused(path, one_line, match)
+
+
+def test_dpx_of_film_densities_needs_a_name(tmp_path, make, random, one_line):
+    attributes = {"oiio:BitsPerSample": 10, "dpx:Transfer": "Printing density"}
+    path = make.image(tmp_path / "a.dpx", pixels_of(random, "uint16"), attributes=attributes)
+    refused(path, one_line, "--colorspace")
+    assert read_texture(path, "ADX10").space.name == "ADX10"

@@ -174,7 +174,7 @@ def _check(path: Path, spec: oiio.ImageSpec) -> str:
     if spec.depth > 1:
         raise problem(path, f"is a volume of {spec.depth} slices; give a flat image")
     model = photometric(spec)
-    kind = str(spec.getattribute("jpeg:ColorSpace") or spec.getattribute("psd:ColorMode") or "")
+    kind = spec.get_string_attribute("jpeg:ColorSpace")
     if model == 5 or kind in ("CMYK", "YCCK"):
         raise problem(path, "is CMYK, made for print; convert it to RGB")
     if model is not None and model not in (*_RGB_PHOTOMETRICS, *_GREY_PHOTOMETRICS, _PALETTE):

@@ -1,8 +1,8 @@
 """What the first bytes of an image say that the decoder does not.
 
-OpenImageIO expands palettes without a word, tries every plug-in it has on a file it cannot place
-(among them `null`, which makes up an image for any name that ends so), and its PNG decoder prints
-damage to the terminal. Looking first avoids all three.
+OpenImageIO expands palettes and converts the CMYK of PSD without a word, tries every plug-in it has
+on a file it cannot place (among them `null`, which makes up an image for any name that ends so), and
+its PNG decoder prints damage to the terminal. Looking first avoids all of it.
 """
 
 import os
@@ -28,6 +28,7 @@ SIGNATURES = (
 EXTENSIONS = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".tx", ".exr", ".dpx", ".psd")
 """What files of these formats are usually called, lower case."""
 PNG_PALETTE = 3
+PSD_CMYK = b"\0\4"
 LARGEST = 32768  # texels along a side
 _PIECE = 1 << 20
 
@@ -43,6 +44,8 @@ def image_format(path: Path) -> str:
             found = next((name for magic, name in SIGNATURES if start.startswith(magic)), None)
             if found == "png":
                 _check_png(path, file)
+            elif found == "psd" and file.read(18)[16:] == PSD_CMYK:
+                raise problem(path, "is CMYK, made for print; convert it to RGB")
     except FileNotFoundError as error:
         raise problem(path, "no such file; check the name") from error
     except IsADirectoryError as error:
