@@ -4,7 +4,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
-from cutis.colour.spaces import ALIASES, SPACES, rgb_space
+from cutis.colour.spaces import ALIASES, D65, SPACES, RGBSpace, chromaticities_of, rgb_space
 from cutis.errors import CutisError
 
 OCIO = {
@@ -40,3 +40,25 @@ def test_names_and_aliases():
     assert {rgb_space(alias).name for alias in ALIASES} == {space.name for space in SPACES}
     with pytest.raises(CutisError, match="ACEScg"):
         rgb_space("ProPhoto")
+
+
+@pytest.mark.parametrize("space", SPACES, ids=lambda space: space.name)
+def test_chromaticities_of_a_matrix(space):
+    """Of spaces under D65 their own; of others those that give the same colours."""
+    numbers = chromaticities_of(space.matrix)
+    if space.white == D65:
+        np.testing.assert_allclose(numbers, space.chromaticities, atol=1e-12)
+    xy = [tuple(numbers[i : i + 2]) for i in range(0, 8, 2)]
+    np.testing.assert_allclose(RGBSpace("", tuple(xy[:3]), xy[3]).matrix, space.matrix, atol=1e-12)
+
+
+def test_to_xyz_against_colour_science():
+    import colour
+
+    theirs = colour.RGB_COLOURSPACES["ACEScg"]
+    ours = rgb_space("ACEScg")
+    np.testing.assert_allclose(ours.to_xyz(), theirs.matrix_RGB_to_XYZ, atol=1e-6)
+    white = colour.xy_to_XYZ(theirs.whitepoint)
+    d50 = np.array([0.9642, 1.0, 0.8249])
+    adapted = colour.adaptation.matrix_chromatic_adaptation_VonKries(white, d50, "Bradford")
+    np.testing.assert_allclose(ours.to_xyz(d50), adapted @ theirs.matrix_RGB_to_XYZ, atol=1e-6)

@@ -1,8 +1,8 @@
 """What the first bytes of an image say that the decoder does not.
 
 OpenImageIO expands palettes and converts the CMYK of PSD without a word, tries every plug-in it has
-on a file it cannot place (among them `null`, which makes up an image for any name that ends so), and
-its PNG decoder prints damage to the terminal. Looking first avoids all of it.
+on a file it cannot place (among them `null`, which makes up an image for any name that ends so),
+and its PNG decoder prints damage to the terminal. Looking first avoids all of it.
 """
 
 import os

@@ -54,6 +54,9 @@ def colour_space(name: str, config: str | None = None) -> Space:
 def _suggestion(name: str, config: str | None) -> str:
     """Names close to `name`, else some of those known: configurations hold hundreds."""
     spaces, others = ocio_names(config)
+    if not spaces:
+        ours = ", ".join(space.name for space in SPACES)
+        return f"known are {ours}; others need OpenColorIO: pip install opencolorio"
     spaces = list(dict.fromkeys([*(space.name for space in SPACES), *spaces]))
     by_case = {known.lower(): known for known in [*others, *ALIASES, *spaces]}
     close = difflib.get_close_matches(name.lower(), by_case, n=3, cutoff=0.6)
