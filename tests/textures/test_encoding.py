@@ -57,6 +57,8 @@ SCRIPT = """
         ("a.tif", "uint8"),
         ("a.tif", "float32"),
         ("a.exr", "float16"),
+        ("a.tx", "uint8"),
+        ("a.dpx", "uint8"),
     ],
 )
 def test_a_disk_that_fills_leaves_nothing(tmp_path, name, dtype):
@@ -95,7 +97,7 @@ def mount(tmp_path):
         libc.umount2(one, DETACH)
 
 
-@pytest.mark.parametrize("name", ["a.png", "a.jpg", "a.tif", "a.exr"])
+@pytest.mark.parametrize("name", ["a.png", "a.jpg", "a.tif", "a.exr", "a.tx", "a.dpx"])
 def test_a_read_only_disk_is_explained(mount, one_line, name):
     path = mount(READ_ONLY) / name
     with pytest.raises(CutisError, match="read-only file system") as caught:
@@ -103,7 +105,7 @@ def test_a_read_only_disk_is_explained(mount, one_line, name):
     one_line(caught, path)
 
 
-@pytest.mark.parametrize("name", ["a.png", "a.jpg", "a.tif", "a.exr"])
+@pytest.mark.parametrize("name", ["a.png", "a.jpg", "a.tif", "a.exr", "a.tx", "a.dpx"])
 def test_a_full_disk_leaves_what_was_there(mount, one_line, name):
     small_disk = mount()
     noise = np.random.default_rng(1).integers(0, 256, (400, 400, 3)).astype(np.uint8)
@@ -118,7 +120,7 @@ def test_a_full_disk_leaves_what_was_there(mount, one_line, name):
     assert list(small_disk.iterdir()) == [path]
 
 
-@pytest.mark.parametrize("name", ["a.png", "a.jpg", "a.tif", "a.exr"])
+@pytest.mark.parametrize("name", ["a.png", "a.jpg", "a.tif", "a.exr", "a.tx", "a.dpx"])
 def test_missing_folder(tmp_path, one_line, name):
     path = tmp_path / "no" / name
     with pytest.raises(CutisError, match="does not exist") as caught:

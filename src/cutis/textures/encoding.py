@@ -14,12 +14,17 @@ from cutis.errors import CutisError
 from cutis.textures.atomic import replacing
 from cutis.textures.decoding import pending_error
 from cutis.textures.headers import image_format
-from cutis.textures.problem import check_name, problem
+from cutis.textures.mip import Pyramid
+from cutis.textures.problem import check_name, problem, reason
 
 # libtiff is asked for an empty EXIF block and declines; the image is complete all the same.
 _HARMLESS = {"failed TIFFWriteCustomDirectory() of the Exif data"}
 
 Pixels = NDArray[np.generic]
+TILE = 64
+"""Texels along a side of a tile of a texture for renderers, as is usual."""
+_BIG = 3 << 30  # bytes; with their levels such textures pass the 4 GiB of a plain TIFF
+_DTYPES = {"uint8": "uint8", "uint16": "uint16", "half": "float16", "float": "float32"}
 
 
 def encode(path: Path, file_format: str, spec: oiio.ImageSpec, pixels: Pixels) -> None:
@@ -48,13 +53,8 @@ def encoder(path: Path, file_format: str, spec: oiio.ImageSpec) -> Iterator["Enc
                         held.seek(0)
                         shutil.copyfileobj(held, f, 1 << 20)
         elif file_format == "tx":
-            base = temporary.with_suffix(".base.tif")
-            try:
-                with Encoder(path, str(base), "tiff", spec) as sink:
-                    yield sink
-                _make_texture(path, base, temporary, spec)
-            finally:
-                base.unlink(missing_ok=True)
+            with MipEncoder(path, str(temporary), spec) as sink:
+                yield sink
         else:
             with Encoder(path, str(temporary), file_format, spec) as sink:
                 yield sink
@@ -87,7 +87,7 @@ class Encoder:
         good = self._sink.close()
         error = pending_error(self._sink)
         # PNG returns True on a full disk and tells only here.
-        if not good or (error and error not in _HARMLESS):
+        if not good or set(error.splitlines()) - _HARMLESS:
             raise _failed(self._path, error)
         if self._row != self._spec.height:
             raise _failed(self._path, f"{self._row} of {self._spec.height} rows came")
@@ -138,28 +138,63 @@ class Encoder:
         self._row += len(pixels)
 
 
-def _make_texture(path: Path, base: Path, target: Path, spec: oiio.ImageSpec) -> None:
-    """Tiles and MIP levels of the image in `base`, as renderers look textures up."""
-    how = oiio.ImageSpec()
-    how.set_format(spec.format)
-    how.tile_width = how.tile_height = 64
-    how.attribute("maketx:fileformatname", "tiff")
-    how.attribute("compression", "zip")
-    image = oiio.ImageBuf(str(base))
-    good = oiio.ImageBufAlgo.make_texture(oiio.MakeTxTexture, image, str(target), how)
-    error = pending_error()
-    if not good:
-        raise _failed(path, error)
+class MipEncoder(Encoder):
+    """A TIFF of tiles with all MIP levels in the making, as renderers look textures up."""
+
+    def __init__(self, path: Path, name: str, spec: oiio.ImageSpec) -> None:
+        spec = spec.copy()
+        spec.tile_width, spec.tile_height, spec.tile_depth = TILE, TILE, 1
+        spec.attribute("textureformat", "Plain Texture")
+        spec.attribute("wrapmodes", "black,black")
+        if spec.image_bytes() > _BIG:
+            spec.attribute("tiff:bigtiff", 1)
+        shape, dtype = (spec.height, spec.width, spec.nchannels), _DTYPES[str(spec.format)]
+        self._name = name
+        self._pyramid = Pyramid(shape, np.dtype(dtype), path.parent)
+        try:
+            super().__init__(path, name, "tiff", spec)
+        except BaseException:
+            self._pyramid.close()
+            raise
+
+    def write(self, pixels: Pixels) -> None:
+        """The next rows (h, W, C)."""
+        super().write(pixels)
+        try:
+            self._pyramid.push(pixels)
+        except OSError as error:
+            raise _failed(self._path, reason(error)) from error
+
+    def __exit__(self, kind: type[BaseException] | None, *rest: object) -> None:
+        try:
+            if kind is None and self._row + sum(map(len, self._waiting)) == self._spec.height:
+                self._append_levels()
+            super().__exit__(kind, *rest)
+        finally:
+            self._pyramid.close()
+
+    def _append_levels(self) -> None:
+        for shape, rows in self._pyramid.levels():
+            self._flush(last=True)
+            spec = self._spec.copy()
+            spec.height, spec.width, _ = shape
+            spec.full_x = spec.full_y = spec.x = spec.y = 0
+            spec.full_height, spec.full_width = spec.height, spec.width
+            if not self._sink.open(self._name, spec, "AppendSubimage"):
+                raise _failed(self._path, pending_error(self._sink))
+            self._spec, self._row = spec, 0
+            for band in rows:
+                super().write(band)
 
 
 def _check_whole(path: Path, temporary: Path, file_format: str) -> None:
-    """PNG and OpenEXR say nothing when the last bytes find no room: look whether they are there."""
+    """Some say nothing when the last bytes find no room: look whether they are there."""
     if file_format == "png":
         try:
             image_format(temporary)
         except CutisError as cause:
             raise _failed(path, "the file came out incomplete") from cause
-    elif file_format == "openexr":
+    elif file_format in ("openexr", "dpx"):
         source = oiio.ImageInput.open(str(temporary))
         whole = source is not None
         if source is not None:
