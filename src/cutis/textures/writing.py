@@ -8,15 +8,13 @@ from pathlib import Path
 from typing import Protocol
 
 import numpy as np
-import OpenImageIO as oiio
-from numpy.typing import NDArray
 
-from cutis.colour.spaces import LINEAR, SRGB, RGBSpace, Space
+from cutis.colour.spaces import SRGB, Space
 from cutis.textures.encoding import Encoder, encoder
 from cutis.textures.icc import IccSpace
 from cutis.textures.problem import problem
-from cutis.textures.profile import icc_profile
 from cutis.textures.spaces import sibling
+from cutis.textures.specs import header
 from cutis.textures.texture import Texture, bands, colour_channels, from_unit, to_unit
 
 FORMATS = {
@@ -39,30 +37,6 @@ _STORED_AS = {
     "dpx": {"float16": "uint16", "float32": "uint16"},
 }
 _MOST_CHANNELS = {"png": 4, "jpeg": 3, "dpx": 4}
-# Other compressions would change texels that nobody touched, or are not in every build.
-_LOSSLESS = {
-    "tiff": {"none", "lzw", "zip", "packbits"},
-    "openexr": {"none", "rle", "zip", "zips", "piz"},
-}
-# Metadata that means nothing outside the format it came from, as OpenImageIO takes patterns: one by
-# one, since it knows no alternatives.
-_PRIVATE = (
-    *(f"{name}:.*" for name in ("tiff", "png", "jpeg", "openexr", "oiio", "dpx", "psd")),
-    *("compression", "planarconfig", "name", "screenWindow.*"),
-    "thumbnail.*",
-)
-# What is true of a whole texture with its MIP levels, and of the colours it had.
-_MIP = (
-    *("textureformat", "wrapmodes", "fovcot", "oiio:miplevels"),
-    *("oiio:SHA-1", "oiio:AverageColor", "oiio:ConstantColor"),
-)
-# What says which space the colours are in.
-_SPACE = (
-    *("ICCProfile", "ICCProfile:.*", "chromaticities", "colorInteropID", "oiio:ColorSpace"),
-    *("oiio:Gamma", "CICP", "dpx:Transfer", "dpx:Colorimetric"),
-)
-# Where profiles go; the others tell a space in their own ways, and DPX hardly any.
-_PROFILED = ("png", "jpeg", "tiff", "tx")
 # These know only colour that is multiplied by alpha.
 _ASSOCIATED = ("openexr", "dpx", "tx")
 
@@ -131,7 +105,7 @@ def texture_writer(
     path = Path(path)
     file_format = format_of(path)
     blank = like.rows(slice(0, 0))
-    spec = _spec(blank, _fitted(blank, file_format, space), file_format, like.shape[0])
+    spec = header(blank, _fitted(blank, file_format, space), file_format, like.shape[0])
     with encoder(path, file_format, spec) as sink:
         yield TextureWriter(sink, file_format, space)
 
@@ -194,70 +168,3 @@ def _arranged(texture: Texture, most: int | None) -> Texture:
     pixels = texture.pixels[..., columns]
     out = replace(texture, pixels=pixels, channels=tuple(names), associated=associated)
     return out if colour is None else out.with_linear(colour, np.ones(out.shape, bool))
-
-
-def _spec(source: Texture, fitted: Texture, file_format: str, height: int) -> oiio.ImageSpec:
-    """The header: that of the source as far as it fits the format."""
-    spec = oiio.ImageSpec() if source.spec is None else source.spec.copy()
-    same_format = source.spec is not None and source.format == file_format
-    mixed = spec.channelformats if same_format else ()
-    width, count = fitted.shape[1], len(fitted.channels)
-    if (spec.width, spec.height) != (width, height) or not same_format:
-        spec.x = spec.y = spec.full_x = spec.full_y = 0
-        spec.full_width, spec.full_height = width, height
-        spec.tile_width = spec.tile_height = spec.tile_depth = 0
-    spec.width, spec.height, spec.depth, spec.nchannels = width, height, 1, count
-    spec.full_depth = 1
-    spec.channelnames = fitted.channels
-    spec.set_format(oiio.TypeDesc(_type_name(fitted.pixels)))
-    if len(mixed) == count and fitted.pixels.dtype == np.float32:
-        spec.channelformats = mixed
-    names = [name.lower() for name in fitted.channels]
-    spec.alpha_channel = names.index("a") if "a" in names else -1
-    spec.z_channel = names.index("z") if "z" in names else -1
-    _erase(spec, _MIP if same_format else (*_MIP, *_PRIVATE))
-    if fitted.space != source.space:
-        _erase(spec, _SPACE)
-    if not same_format or fitted.space != source.space or source.origin == "given":
-        _tell_space(spec, fitted, file_format)
-    _erase(spec, ("oiio:UnassociatedAlpha", "oiio:subimages"))
-    if not same_format or fitted.pixels.dtype != source.pixels.dtype:
-        _erase(spec, ("oiio:BitsPerSample",))
-    if spec.alpha_channel >= 0 and not fitted.associated:
-        spec.attribute("oiio:UnassociatedAlpha", 1)
-    if file_format == "tiff" and fitted.pixels.dtype == np.float16:
-        spec.attribute("tiff:half", 1)
-    if file_format in _LOSSLESS and spec.getattribute("compression") not in _LOSSLESS[file_format]:
-        spec.attribute("compression", "zip")
-    if file_format == "jpeg":
-        spec.attribute("compression", "jpeg:98")
-        if not same_format:
-            spec.attribute("jpeg:subsampling", "4:4:4")
-    return spec
-
-
-def _tell_space(spec: oiio.ImageSpec, fitted: Texture, file_format: str) -> None:
-    """Which space the colours are in, where the format has words for it and none are there."""
-    space, known = fitted.space, fitted.space.chromaticities
-    if file_format == "openexr" and known is not None and not space.encoded:
-        spec.attribute("chromaticities", oiio.TypeDesc("float[8]"), known)
-    if file_format == "dpx" and space == LINEAR:
-        spec.attribute("dpx:Transfer", "Linear")
-    usual = LINEAR if fitted.pixels.dtype.kind == "f" else SRGB
-    if (
-        file_format in _PROFILED
-        and isinstance(space, RGBSpace)
-        and space != usual
-        and spec.getattribute("ICCProfile") is None
-    ):
-        profile = np.frombuffer(icc_profile(space), np.uint8)
-        spec.attribute("ICCProfile", oiio.TypeDesc(f"uint8[{len(profile)}]"), profile)
-
-
-def _erase(spec: oiio.ImageSpec, names: tuple[str, ...]) -> None:
-    for name in names:
-        spec.erase_attribute(name)
-
-
-def _type_name(pixels: NDArray[np.generic]) -> str:
-    return {"float16": "half", "float32": "float"}.get(pixels.dtype.name, pixels.dtype.name)
