@@ -13,7 +13,7 @@ from cutis.maps.files import (
     save_maps,
     source_note,
 )
-from cutis.maps.lut import Lut, edit_lut
+from cutis.maps.lut_export import export_lut
 from cutis.maps.regions import Regions
 from cutis.maps.report import Report, report
 from cutis.maps.sampler import Sampler
@@ -21,16 +21,15 @@ from cutis.maps.skin_maps import SkinMaps
 
 __all__ = [
     "Edit",
-    "Lut",
     "MapsFile",
     "Regions",
     "Report",
     "Sampler",
     "SkinMaps",
     "blank",
-    "edit_lut",
     "estimate",
     "estimate_rows",
+    "export_lut",
     "find_source",
     "load_maps",
     "load_skin",

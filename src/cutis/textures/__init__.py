@@ -2,7 +2,7 @@
 
 from cutis.textures.atomic import replacing
 from cutis.textures.channels import ChannelFile, channel_writer, read_channels, write_channels
-from cutis.textures.lut_files import write_lut
+from cutis.textures.lut_files import write_clf, write_cube
 from cutis.textures.mask import MaskFile, read_mask
 from cutis.textures.reading import TextureFile, read_texture
 from cutis.textures.spaces import colour_space
@@ -24,6 +24,7 @@ __all__ = [
     "replacing",
     "texture_writer",
     "write_channels",
-    "write_lut",
+    "write_clf",
+    "write_cube",
     "write_texture",
 ]

@@ -1,6 +1,7 @@
-"""LUT files: Resolve's .cube and the Common LUT Format .clf of the Academy [aces_clf]."""
+"""LUT files: Resolve's .cube, and the operators of the Common LUT Format .clf [aces_clf]."""
 
 import os
+from collections.abc import Sequence
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
@@ -10,57 +11,100 @@ from numpy.typing import NDArray
 from cutis.textures.atomic import replacing
 from cutis.textures.problem import problem
 
-Table = NDArray[np.floating]
+Array = NDArray[np.floating]
+
+FORMATS = (".cube", ".clf")
+"""Extensions of LUTs that are written."""
 
 
-def write_lut(path: str | os.PathLike[str], table: Table, shaper: Table | None, title: str) -> None:
-    """Writes a LUT to `path`, .cube or .clf by its extension.
+def write_cube(
+    path: str | os.PathLike[str], table: Array, shaper: Array | None = None, title: str = ""
+) -> None:
+    """Writes a .cube: `table` (n, n, n, 3) by red, green, blue, values from 0 to 1.
 
-    `table` (n, n, n, 3) by red, green, blue; `shaper` (m,) first, from values of 0 to 1 to places
-    on the grid, where there is one. Raises CutisError for other extensions and names that cannot be
-    written.
+    `shaper` (m,) comes first, from values of 0 to 1 to places on the grid, where there is one.
+    The title is a comment: OpenColorIO reads no shaper from a file with a TITLE. Raises CutisError
+    for names that cannot be written.
     """
-    path = Path(path)
-    writers = {".cube": _cube, ".clf": _clf}
-    if path.suffix.lower() not in writers:
-        raise problem(path, "a LUT is written as .cube or .clf; end its name so")
-    text = writers[path.suffix.lower()](table, shaper, title)
-    with replacing(path) as temporary:
-        temporary.write_text(text, encoding="utf-8")
-
-
-def _rows(values: Table) -> str:
-    return "\n".join(" ".join(f"{v:.7f}" for v in row) for row in values)
-
-
-def _cube(table: Table, shaper: Table | None, title: str) -> str:
-    plain = " ".join(title.split()).encode("ascii", "replace").decode()
-    lines = [f"# {plain}"]  # as a TITLE it would keep OpenColorIO from reading the shaper
+    lines = [f"# {' '.join(title.split())}".encode("ascii", "replace").decode()]
     if shaper is not None:
         lines += [f"LUT_1D_SIZE {len(shaper)}", "LUT_1D_INPUT_RANGE 0.0 1.0"]
     lines += [f"LUT_3D_SIZE {len(table)}"]
     if shaper is not None:
         lines += ["LUT_3D_INPUT_RANGE 0.0 1.0", _rows(np.repeat(shaper[:, None], 3, axis=1))]
     lines.append(_rows(table.transpose(2, 1, 0, 3).reshape(-1, 3)))  # red fastest
-    return "\n".join(lines) + "\n"
+    _write(path, ".cube", "\n".join(lines) + "\n")
 
 
-def _clf(table: Table, shaper: Table | None, title: str) -> str:
-    size = len(table)
-    nodes = []
-    if shaper is not None:
-        values = "\n".join(f"{v:.7f}" for v in shaper)
-        nodes.append(
-            '<LUT1D id="shaper" inBitDepth="32f" outBitDepth="32f" interpolation="linear">\n'
-            f'<Array dim="{len(shaper)} 1">\n{values}\n</Array>\n</LUT1D>'
-        )
-    nodes.append(
-        '<LUT3D id="edit" inBitDepth="32f" outBitDepth="32f" interpolation="tetrahedral">\n'
-        f'<Array dim="{size} {size} {size} 3">\n{_rows(table.reshape(-1, 3))}\n</Array>\n</LUT3D>'
-    )  # blue fastest
-    body = "\n".join(nodes)
-    return (
+def write_clf(path: str | os.PathLike[str], operators: Sequence[str], title: str = "") -> None:
+    """Writes a .clf of `operators` in their order; those below make them.
+
+    Raises CutisError for names that cannot be written.
+    """
+    body = "\n".join(operators)
+    _write(
+        path,
+        ".clf",
         '<?xml version="1.0" encoding="UTF-8"?>\n'
         f'<ProcessList id="cutis" compCLFversion="3.0" name={quoteattr(title)}>\n'
-        f"{body}\n</ProcessList>\n"
+        f"{body}\n</ProcessList>\n",
     )
+
+
+def srgb_curve(inverse: bool = False) -> str:
+    """Encoded sRGB → linear, or the inverse; negative values keep their slope."""
+    style = "monCurveRev" if inverse else "monCurveFwd"
+    return (
+        f'<Exponent {DEPTHS} style="{style}">'
+        '<ExponentParams exponent="2.4" offset="0.055"/></Exponent>'
+    )
+
+
+def logarithm(offset: float, inverse: bool = False) -> str:
+    """x → log(x + offset), natural, or the inverse."""
+    style = "logToLin" if inverse else "linToLog"
+    return (
+        f'<Log {DEPTHS} style="{style}">'
+        f'<LogParams base="{np.e:.15g}" linSideSlope="1" linSideOffset="{offset:.9g}" '
+        'logSideSlope="1" logSideOffset="0"/></Log>'
+    )
+
+
+def matrix(values: Array, shift: Array) -> str:
+    """(3,) → values (3, 3) @ it + shift (3,)."""
+    rows = np.hstack([values, shift[:, None]])
+    text = "\n".join(" ".join(f"{v:.10g}" for v in row) for row in rows)
+    return f'<Matrix {DEPTHS}><Array dim="3 4">\n{text}\n</Array></Matrix>'
+
+
+def curves(values: Array) -> str:
+    """Three curves (m, 3) over 0 to 1, straight between their points."""
+    return (
+        f'<LUT1D {DEPTHS} interpolation="linear"><Array dim="{len(values)} 3">\n'
+        f"{_rows(values, 9)}\n</Array></LUT1D>"
+    )
+
+
+def grid(table: Array) -> str:
+    """(n, n, n, 3) by the first, second and third channel, read trilinearly."""
+    size = len(table)
+    return (
+        f'<LUT3D {DEPTHS} interpolation="trilinear"><Array dim="{size} {size} {size} 3">\n'
+        f"{_rows(table.reshape(-1, 3))}\n</Array></LUT3D>"
+    )
+
+
+DEPTHS = 'inBitDepth="32f" outBitDepth="32f"'
+
+
+def _rows(values: Array, digits: int = 7) -> str:
+    line = " ".join([f"%.{digits}f"] * values.shape[-1])
+    return "\n".join(line % tuple(row) for row in values.tolist())
+
+
+def _write(path: str | os.PathLike[str], extension: str, text: str) -> None:
+    path = Path(path)
+    if path.suffix.lower() != extension:
+        raise problem(path, f"this LUT is a {extension}; end its name so")
+    with replacing(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")

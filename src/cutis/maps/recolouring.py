@@ -1,0 +1,77 @@
+"""An edit that is the same everywhere, as a function from colour to colour.
+
+Estimate, edit, decode, times what the model does not explain: what `SkinMaps.apply` and `albedo` do
+to a texel depends on its colour alone. Colours that are no skin's are not in the reach of an edit
+of skin: it fades as the model's own colour moves away from the one given.
+"""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cutis.colour import delta_e
+from cutis.errors import CutisError
+from cutis.inverse.calibration import Calibration
+from cutis.inverse.models import load_model
+from cutis.maps.edits import Edit
+from cutis.maps.skin_maps import DARKEST
+from cutis.optics import NAMES
+
+WHOLE, NONE = 5.0, 15.0
+"""ΔE00 between a colour and the model's up to which an edit is whole, and from which there is
+none."""
+
+Recolouring = Callable[[NDArray[np.floating]], NDArray[np.float32]]
+
+
+def recolouring(
+    edits: Sequence[Edit],
+    model: str = "default",
+    calibration: Calibration | None = None,
+    amount: float = 1.0,
+) -> Recolouring:
+    """The function from (n, 3) linear sRGB as captured to the same with the edits in it.
+
+    Colours that no edit changes come back bit for bit. Raises CutisError for edits that depend on
+    the place (patches), unknown models, and amounts outside 0 to 1.
+    """
+    if not 0 <= amount <= 1:
+        raise CutisError(f"the amount of an edit must lie in 0 to 1, not {amount:g}")
+    for edit in edits:
+        if edit.where != "everywhere":
+            raise CutisError(f"{edit}: a LUT cannot tell places apart; leave this edit out")
+    known = calibration or Calibration()
+    inverse = load_model(model)
+
+    def recoloured(captured: NDArray[np.floating]) -> NDArray[np.float32]:
+        result = np.array(captured, dtype=np.float32)
+        colours = known.apply(result)
+        skins = inverse.encode(colours)
+        edited = skins.copy()
+        weight = np.full(len(skins), amount, dtype=np.float32)
+        for edit in edits:
+            column = NAMES.index(edit.parameter)
+            edited[:, column] = edit(edited[:, column], weight)[0]
+        before, after = inverse.decode(skins), inverse.decode(edited)
+        share = fading(delta_e(before, np.maximum(colours, 0.0)))
+        changed = (edited != skins).any(axis=1) & (share > 0)
+        if known.conversion is not None:  # gains cancel, a matrix does not
+            before, after = known.undo(before), known.undo(after)
+        ratio = after[changed] / np.maximum(before[changed], DARKEST)
+        result[changed] *= 1 + share[changed, None] * (ratio - 1)
+        return result
+
+    return recoloured
+
+
+def fading(error: NDArray[np.floating]) -> NDArray[np.floating]:
+    """Share of an edit for colours that the model misses by `error` ΔE00: smooth from 1 to 0."""
+    x = np.clip((error - WHOLE) / (NONE - WHOLE), 0.0, 1.0)
+    return 1.0 - x * x * (3.0 - 2.0 * x)
+
+
+def title(edits: Sequence[Edit], amount: float = 1.0) -> str:
+    """What the edits do, in a line."""
+    text = ", ".join(str(edit) for edit in edits) or "no edit"
+    return text if amount == 1 else f"{text}, amount {amount:g}"
