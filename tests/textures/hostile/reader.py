@@ -1,0 +1,259 @@
+"""Reads files in a process of its own, and says what became of it.
+
+`Reader` is the near end. Run as a program this module is the far end: it takes lines
+"how<TAB>path", reads, and answers one line of JSON each. Whatever a decoder prints is caught.
+"""
+
+import contextlib
+import ctypes
+import hashlib
+import json
+import os
+import resource
+import selectors
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+MOST_MEMORY = 1.5 * 2**30
+ADDRESSES = 24 * 2**30  # so that no reader brings the machine down
+SECONDS = 10.0
+_ESTIMATE_SECONDS = 120.0  # the whole command, its start among it, on a busy machine
+
+
+@dataclass
+class Outcome:
+    """What became of one file.
+
+    `findings` say what must not happen: "crash …", "hang", "memory …", "traceback …", "printed …",
+    "partial output …". `results` are by kind of reading: a digest of what was read, or the error.
+    """
+
+    findings: list[str] = field(default_factory=list)
+    results: dict[str, str] = field(default_factory=dict)
+    good: dict[str, bool] = field(default_factory=dict)
+    memory: int = 0
+    seconds: float = 0.0
+
+
+class Reader:
+    """A process that reads; started again when it dies or hangs."""
+
+    def __init__(self, how: str = "read") -> None:
+        """`how` is "read" (by the library) or "estimate" (by the command)."""
+        self._how = how
+        self._process: subprocess.Popen[str] | None = None
+
+    def _started(self) -> subprocess.Popen[str]:
+        if self._process is None or self._process.poll() is not None:
+            self._process = subprocess.Popen(
+                [sys.executable, "-W", "ignore", __file__, self._how],
+                stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+                env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+            )  # fmt: skip
+            self._answer(120)
+        return self._process
+
+    def _answer(self, seconds: float) -> str | None:
+        """A line of the far end; "" where it died, None where it takes too long."""
+        process = self._process
+        assert process is not None and process.stdout is not None
+        with selectors.DefaultSelector() as selector:
+            selector.register(process.stdout, selectors.EVENT_READ)
+            return process.stdout.readline() if selector.select(seconds) else None
+
+    def read(self, path: Path) -> Outcome:
+        """Reads a file in all ways."""
+        process = self._started()
+        assert process.stdin is not None
+        start = time.monotonic()
+        print(path, file=process.stdin, flush=True)
+        line = self._answer(SECONDS if self._how == "read" else _ESTIMATE_SECONDS)
+        seconds = time.monotonic() - start
+        if line is None:
+            self.close(kill=True)
+            return Outcome([f"hang {seconds:.0f} s"], seconds=seconds)
+        if not line:
+            code = process.wait()
+            self.close()
+            name = signal.Signals(-code).name if code < 0 else f"exit {code}"
+            return Outcome([f"crash {name}"], seconds=seconds)
+        outcome = Outcome(**json.loads(line))
+        outcome.seconds = seconds
+        return outcome
+
+    def close(self, kill: bool = False) -> None:
+        """Ends the process."""
+        process, self._process = self._process, None
+        if process is None:
+            return
+        if kill:
+            process.kill()
+        for pipe in (process.stdin, process.stdout):
+            with contextlib.suppress(OSError):
+                pipe.close()
+        process.wait()
+
+
+class _Terminal:
+    """What this process and its libraries print, caught in a file."""
+
+    def __init__(self) -> None:
+        self._caught = tempfile.TemporaryFile()
+        for stream in (1, 2):
+            os.dup2(self._caught.fileno(), stream)
+        self._flush: Callable[[Any], int] = ctypes.CDLL(None).fflush
+
+    def said(self) -> str:
+        """All since the last call."""
+        sys.stdout.flush(), sys.stderr.flush()
+        self._flush(None)
+        self._caught.seek(0)
+        text = self._caught.read()
+        self._caught.truncate(0)
+        self._caught.seek(0)
+        return text.decode(errors="replace")
+
+
+def _reset_peak() -> None:
+    with contextlib.suppress(OSError):
+        Path("/proc/self/clear_refs").write_text("5")
+
+
+def _peak() -> int:
+    with contextlib.suppress(OSError, StopIteration, ValueError):
+        lines = Path("/proc/self/status").read_text().splitlines()
+        return int(next(line for line in lines if line.startswith("VmHWM")).split()[1]) * 1024
+    return 0
+
+
+def _texture(path: Path) -> Any:
+    from cutis.textures import read_texture
+
+    texture = read_texture(path)
+    assert texture.linear().shape == (*texture.shape, 3)
+    return texture.pixels
+
+
+def _mask(path: Path) -> Any:
+    from cutis.textures import read_mask
+    from cutis.textures.decoding import Decoder
+
+    with Decoder(path) as source:
+        shape = source.shape
+    return read_mask(path, shape)
+
+
+def _skin(path: Path) -> Any:
+    import numpy as np
+
+    from cutis.maps import load_maps
+
+    skin = load_maps(path)
+    return np.stack([skin.melanin, skin.oxygenation])
+
+
+def _read(path: Path) -> Outcome:
+    from cutis.errors import CutisError
+
+    outcome = Outcome()
+    ways = {"texture": _texture, "mask": _mask}
+    if path.suffix == ".exr":
+        ways["maps"] = _skin
+    for name, way in ways.items():
+        try:
+            values = way(path)
+            outcome.results[name] = hashlib.sha256(values.tobytes()).hexdigest()
+            outcome.good[name] = True
+            del values
+        except CutisError as error:
+            outcome.results[name] = str(error)
+            outcome.good[name] = False
+            if len(str(error).splitlines()) != 1:
+                outcome.findings.append(f"lines {error}")
+            elif path.name not in str(error):
+                outcome.findings.append(f"no name {error}")
+        except BaseException as error:
+            outcome.findings.append(f"traceback {name}: {type(error).__name__}: {error}")
+    return outcome
+
+
+def _estimate(path: Path) -> Outcome:
+    """The whole command in a fork, with a folder of its own."""
+    outcome = Outcome()
+    with tempfile.TemporaryDirectory() as name:
+        out, said, told = Path(name) / "out", Path(name) / "1", Path(name) / "2"
+        child = os.fork()
+        if child == 0:
+            from cutis.apps.main import main
+
+            for stream, file in ((1, said), (2, told)):
+                os.dup2(os.open(file, os.O_CREAT | os.O_WRONLY | os.O_APPEND, 0o600), stream)
+            sys.argv = ["cutis", "estimate", str(path), "-o", str(out)]
+            code = 99
+            try:
+                main()
+            except SystemExit as stop:
+                code = stop.code if isinstance(stop.code, int) else int(stop.code is not None)
+            except BaseException:
+                import traceback
+
+                traceback.print_exc()
+            finally:
+                sys.stdout.flush(), sys.stderr.flush()
+                ctypes.CDLL(None).fflush(None)
+                os._exit(code)
+        _, status = os.waitpid(child, 0)
+        code, errors = os.waitstatus_to_exitcode(status), told.read_text(errors="replace")
+        files = sorted(file.name for file in out.iterdir()) if out.is_dir() else []
+        outcome.results["estimate"] = errors if code else ", ".join(files)
+        outcome.good["estimate"] = code == 0
+        if code not in (0, 1):
+            outcome.findings.append(f"command exit {code}: {errors[:300]}")
+        if code and (len(errors.splitlines()) != 1 or not errors.startswith("cutis: ")):
+            outcome.findings.append(f"printed {errors[:300]!r}")
+        if code == 0 and errors:
+            outcome.findings.append(f"printed {errors[:300]!r}")
+        if code and (files or said.read_text(errors="replace")):
+            outcome.findings.append(f"partial output {files}")
+        if code == 0 and len(files) != 9:
+            outcome.findings.append(f"partial output {files}")
+    return outcome
+
+
+def _serve(how: str) -> None:
+    answers = os.fdopen(os.dup(1), "w")
+    terminal = _Terminal()
+    resource.setrlimit(resource.RLIMIT_AS, (ADDRESSES, ADDRESSES))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    import cutis.maps  # noqa: F401
+    import cutis.textures  # noqa: F401
+
+    if how == "estimate":
+        import cutis.apps.estimate_file
+        import cutis.apps.main
+        import cutis.inverse
+
+        cutis.inverse.load_model("default")  # imported, nothing run: a fork cannot take threads on
+    read = _read if how == "read" else _estimate
+    print("ready", file=answers, flush=True)
+    for line in sys.stdin:
+        _reset_peak()
+        outcome = read(Path(line.rstrip("\n")))
+        outcome.memory = _peak()
+        said = terminal.said()
+        if said:
+            outcome.findings.append(f"printed {said[:300]!r}")
+        if outcome.memory > MOST_MEMORY:
+            outcome.findings.append(f"memory {outcome.memory / 2**30:.1f} GiB")
+        print(json.dumps(outcome.__dict__), file=answers, flush=True)
+
+
+if __name__ == "__main__":
+    _serve(sys.argv[1])
