@@ -4,7 +4,7 @@ import stat
 import pytest
 
 from cutis.errors import CutisError
-from cutis.textures import replacing
+from cutis.textures import replacing, sweep
 
 
 def test_the_file_appears_whole(tmp_path):
@@ -85,3 +85,20 @@ def test_unwritable_folder(tmp_path, one_line):
     tmp_path.chmod(0o500)
     with pytest.raises(CutisError, match="cannot be written"), replacing(tmp_path / "a.txt"):
         pass
+
+
+def test_what_killed_processes_left_is_swept(tmp_path):
+    """Not what is being written, not what others called so."""
+    left = tmp_path / ".face.0123abcd.partial.exr"
+    others = [tmp_path / ".partial.exr", tmp_path / ".face.partial.exr", tmp_path / "face.exr"]
+    for path in (left, *others):
+        path.write_bytes(b"x")
+        os.utime(path, (1, 1))
+    with replacing(tmp_path / "new.exr") as temporary:
+        temporary.write_bytes(b"whole")
+        os.utime(temporary, (1, 1))
+        sweep(tmp_path)
+        assert temporary.exists()
+        assert not left.exists()
+    assert all(path.exists() for path in others)
+    assert (tmp_path / "new.exr").read_bytes() == b"whole"

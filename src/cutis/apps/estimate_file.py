@@ -125,7 +125,7 @@ def estimate_and_show(
     import cutis.maps as maps
     from cutis.apps.previews import Previews
     from cutis.colour import LINEAR
-    from cutis.textures import channel_writer, colour_space, replacing
+    from cutis.textures import channel_writer, colour_space, replacing, sweep
 
     how, stem = task.settings, task.stem
     kind: Literal["half", "float"] = "half" if how.half else "float"
@@ -135,6 +135,7 @@ def estimate_and_show(
     with contextlib.ExitStack() as stack:
         texture, mask = stack.enter_context(task.opened())
         stack.enter_context(options.made_folder(task.output))
+        sweep(task.output)
         shape, total = texture.shape, texture.shape[0] * texture.shape[1]
         like = maps.blank(calibration, how.model, maps.source_note(texture))
         running, previews = maps.Report(like, shape), Previews(calibration, shape)

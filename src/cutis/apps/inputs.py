@@ -4,13 +4,14 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from cutis.errors import CutisError
+from cutis.optics import NAMES
 from cutis.textures.headers import EXTENSIONS
 from cutis.textures.udim import TOKEN, missing_tiles, tile_of, udim_pattern, udim_tiles
 
 Set = tuple[Path, ...]
 """Captures that share one calibration."""
-RESULTS = (".skin.exr", ".model.exr")
-"""Ends of names that are results, not captures."""
+RESULTS = (".skin.exr", ".model.exr", ".error.png", *(f".{name}.png" for name in NAMES))
+"""Ends of names that are results, not captures, where NAME.report.json lies beside."""
 
 
 def capture_sets(words: Sequence[str], udim: bool, sequence: bool) -> list[Set]:
@@ -61,7 +62,7 @@ def _in_folder(folder: Path, pattern: str | None) -> list[Set]:
         for path in sorted(folder.glob(pattern or "*"))
         if path.is_file()
         and not path.name.startswith(".")
-        and not path.name.endswith(RESULTS)
+        and not _is_result(path)
         and (pattern is not None or path.suffix.lower() in EXTENSIONS)
     ]
     if not found:
@@ -71,6 +72,11 @@ def _in_folder(folder: Path, pattern: str | None) -> list[Set]:
     for path in found:
         groups.setdefault(udim_pattern(path) or path, []).append(path)
     return [tuple(group) for group in groups.values()]
+
+
+def _is_result(path: Path) -> bool:
+    ends = (end for end in RESULTS if path.name.endswith(end))
+    return any(path.with_name(f"{path.name[: -len(end)]}.report.json").is_file() for end in ends)
 
 
 def gaps(captures: Set) -> list[str]:

@@ -1,6 +1,6 @@
 """Image files: textures as stored, masks and named channels, read and written without surprises."""
 
-from cutis.textures.atomic import replacing
+from cutis.textures.atomic import replacing, sweep
 from cutis.textures.channels import ChannelFile, channel_writer, read_channels, write_channels
 from cutis.textures.lut_files import write_clf, write_cube
 from cutis.textures.mask import MaskFile, read_mask
@@ -22,6 +22,7 @@ __all__ = [
     "read_mask",
     "read_texture",
     "replacing",
+    "sweep",
     "texture_writer",
     "write_channels",
     "write_clf",

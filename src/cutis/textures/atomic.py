@@ -2,11 +2,16 @@
 
 import contextlib
 import os
+import re
 import secrets
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
 from cutis.textures.problem import problem, reason
+
+_TEMPORARY = re.compile(r"^\..{1,40}\.[0-9a-f]{8}\.partial\.\w+$")
+_FRESH = 1.0  # seconds in which a temporary file may not have its lock yet
 
 
 @contextlib.contextmanager
@@ -25,19 +30,20 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     """
     path = Path(path)
     target = Path(os.path.realpath(path))
-    name = f".{target.stem[:40]}.{secrets.token_hex(4)}{target.suffix}"
+    name = f".{target.stem[:40]}.{secrets.token_hex(4)}.partial{target.suffix}"
     temporary = target.with_name(name)
+    held = -1
     try:
         if target.is_dir():
             raise problem(path, "is a folder; give the name of a file to write")
         if not target.parent.is_dir():
             raise problem(path, f"the folder {target.parent} does not exist; create it first")
-        os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
+        held = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666)
+        _locked(held)
         with contextlib.suppress(FileNotFoundError):
             os.chmod(temporary, target.stat().st_mode & 0o777)
         yield temporary
-        with open(temporary, "rb+") as file:
-            os.fsync(file.fileno())
+        os.fsync(held)
         os.replace(temporary, target)
     except OSError as error:
         about = None if error.filename is None else Path(os.fsdecode(error.filename))
@@ -48,3 +54,34 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     finally:
         with contextlib.suppress(OSError):
             temporary.unlink(missing_ok=True)
+        if held >= 0:
+            os.close(held)
+
+
+def sweep(folder: Path) -> None:
+    """Removes temporary files that processes left in `folder` when they were killed.
+
+    Those of processes that live are locked and stay. Does nothing where files cannot be locked.
+    """
+    for path in folder.glob(".*.partial.*"):
+        with contextlib.suppress(OSError):
+            if _TEMPORARY.match(path.name) and time.time() - path.stat().st_mtime > _FRESH:
+                descriptor = os.open(path, os.O_RDONLY)
+                try:
+                    if _locked(descriptor):
+                        path.unlink()
+                finally:
+                    os.close(descriptor)
+
+
+def _locked(descriptor: int) -> bool:
+    """Whether a file is now locked by us; it stays so until its descriptor is closed."""
+    try:
+        import fcntl
+    except ModuleNotFoundError:
+        return False
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        return False
+    return True

@@ -63,7 +63,8 @@ class Reader:
     def _answer(self, seconds: float) -> str | None:
         """A line of the far end; "" where it died, None where it takes too long."""
         process = self._process
-        assert process is not None and process.stdout is not None
+        assert process is not None
+        assert process.stdout is not None
         with selectors.DefaultSelector() as selector:
             selector.register(process.stdout, selectors.EVENT_READ)
             return process.stdout.readline() if selector.select(seconds) else None
@@ -232,8 +233,8 @@ def _serve(how: str) -> None:
     terminal = _Terminal()
     resource.setrlimit(resource.RLIMIT_AS, (ADDRESSES, ADDRESSES))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    import cutis.maps  # noqa: F401
-    import cutis.textures  # noqa: F401
+    import cutis.maps
+    import cutis.textures
 
     if how == "estimate":
         import cutis.apps.estimate_file
