@@ -1,15 +1,27 @@
-"""`cutis export`: an edit as a LUT that other programs load."""
+"""`cutis export`: an edit as a LUT, or a model's networks, for other programs."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from cutis.apps import options
 
+if TYPE_CHECKING:
+    from cutis.maps import Edit
+
+NETWORKS = (".onnx", ".glsl")
+"""Extensions that a model's networks are written in."""
+
 
 def export(
-    output: Annotated[Path, typer.Argument(help="LUT to write, .cube or .clf.")],
+    output: Annotated[
+        Path,
+        typer.Argument(
+            help="An edit as NAME.cube or NAME.clf; the networks as decoder.onnx, encoder.onnx or "
+            "decoder.glsl."
+        ),
+    ],
     melanin: options.MelaninChange = None,
     blood: options.BloodChange = None,
     thickness: options.ThicknessChange = None,
@@ -17,43 +29,88 @@ def export(
     oxygenation: options.OxygenationChange = None,
     preset: options.Presets = None,
     amount: options.Amount = 1.0,
-    size: Annotated[int, typer.Option(help="Nodes along a side, 2 to 129.")] = 65,
+    size: Annotated[int, typer.Option(help="Nodes along a side of a LUT, at most 129.")] = 65,
     colorspace: Annotated[
         str,
         typer.Option(
-            help="What the texture is stored in: sRGB, linear, ACEScg, Display P3, Rec.2020."
+            help="What textures are stored in: sRGB, linear, ACEScg, Display P3, Rec.2020."
         ),
     ] = "sRGB",
     maps: Annotated[
         Path | None,
         typer.Option(help="Maps of a capture, whose calibration and model the LUT takes over."),
     ] = None,
-    model: options.ModelName = "default",
+    model: Annotated[
+        str | None,
+        typer.Option(help="As in estimate; networks are those of aliaga2022 or a .safetensors."),
+    ] = None,
     quiet: options.Quiet = False,
 ) -> None:
-    """Write an edit as a three-dimensional LUT.
+    """Write an edit as a LUT, or the networks as ONNX or GLSL, for other programs.
 
-    For albedo textures with values from 0 to 1. Colours that are no skin's pass through.
+    A LUT is for the capture whose --maps are given, or for captures that need no calibration.
+    Colours far from skin pass through.
 
-    Example: cutis export tan.cube --preset tanning --colorspace ACEScg --size 97
+    Example: cutis export tan.clf --preset tanning --colorspace ACEScg --maps out/face.skin.exr
     """
     from cutis.apps.console import out
     from cutis.errors import CutisError
-    from cutis.inverse import Calibration
-    from cutis.maps import edit_lut, load_maps
-    from cutis.textures import write_lut
 
     edits = options.edits(preset, melanin, blood, thickness, eumelanin, oxygenation)
+    if output.suffix.lower() in NETWORKS:
+        if edits or maps is not None:
+            raise CutisError(f"{output} is for networks; edits are written as .cube or .clf")
+        said = _networks(output, model or "aliaga2022")
+    else:
+        said = _edit(output, edits, size, colorspace, maps, model, amount)
+    if not quiet:
+        out.print(f"wrote {output}: {said}")
+
+
+def _edit(
+    output: Path,
+    edits: "list[Edit]",
+    size: int,
+    colorspace: str,
+    maps: Path | None,
+    model: str | None,
+    amount: float,
+) -> str:
+    from cutis.colour.spaces import rgb_space
+    from cutis.errors import CutisError
+    from cutis.inverse import Calibration
+    from cutis.maps import export_lut, load_maps
+
     if not edits:
         raise CutisError(
             "nothing to export: give --preset or a parameter flag such as --melanin x2"
         )
-    calibration = Calibration()
-    if maps is not None:
-        skin = load_maps(maps)
-        calibration = skin.calibration
-        model = skin.model if model == "default" else model
-    lut = edit_lut(edits, size, colorspace, model=model, calibration=calibration, amount=amount)
-    write_lut(output, lut.table, lut.shaper, lut.title)
-    if not quiet:
-        out.print(f"wrote {output}: {lut.title}, {size} nodes a side, for {lut.space.name}")
+    space = rgb_space(colorspace)
+    skin = None if maps is None else load_maps(maps)
+    calibration = Calibration() if skin is None else skin.calibration
+    chosen = model or ("default" if skin is None else skin.model)
+    title = export_lut(
+        output, edits, space, size, model=chosen, calibration=calibration, amount=amount
+    )
+    return f"{title}, {size} nodes a side"
+
+
+def _networks(output: Path, model: str) -> str:
+    from cutis.errors import CutisError
+    from cutis.inverse.models import networks
+    from cutis.inverse.onnx_export import decoder_onnx, encoder_onnx
+    from cutis.inverse.shader_export import decoder_glsl
+    from cutis.textures import replacing
+
+    pair = networks(model)
+    half = "encoder" if "encoder" in output.stem.lower() else "decoder"
+    name = Path(model).name
+    if output.suffix.lower() == ".onnx":
+        content = encoder_onnx(pair) if half == "encoder" else decoder_onnx(pair)
+    elif half == "encoder":
+        raise CutisError(f"{output}: only the decoder is written as GLSL; the encoder as .onnx")
+    else:
+        content = decoder_glsl(pair.decoder, f"The decoder of {name}, from cutis.").encode("utf-8")
+    with replacing(output) as temporary:
+        temporary.write_bytes(content)
+    return f"{half} of {name}"

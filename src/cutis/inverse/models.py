@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from cutis.albedo.colour_table import colour_table
 from cutis.errors import CutisError
 from cutis.inverse.lookup import SHAPES, lookup_tensor
-from cutis.inverse.network import Perceptron, load_weights
+from cutis.inverse.network import Autoencoder, Perceptron, load_weights
 
 MODELS = ("default", "aliaga2022", *SHAPES, "kubelka-munk")
 """Names that `load_model` knows; it also takes the path of a weights file."""
@@ -76,11 +76,11 @@ def load_model(name: str = "default") -> Model:
 
         baseline = kubelka_munk_inverse()
         return Model(name, _in_units(baseline.encode), baseline.decode)
-    if name in MODELS:
-        with resources.as_file(weights.joinpath(f"{name}.safetensors")) as file:
-            return _networks(name, file)
-    if name.endswith(".safetensors") and Path(name).is_file():
-        return _networks(name, Path(name))
+    if name in MODELS or (name.endswith(".safetensors") and Path(name).is_file()):
+        from cutis.inverse.units_kernel import from_units
+
+        pair = networks(name)
+        return Model(name, _in_units(pair.encoder), lambda skins: pair.decoder(from_units(skins)))
     raise CutisError(
         f"unknown model {name!r}; choose {', '.join(MODELS)} or a .safetensors file of weights"
     )
@@ -88,18 +88,20 @@ def load_model(name: str = "default") -> Model:
 
 def shipped_encoder() -> Perceptron:
     """The encoder of `aliaga2022`, on which the default inverse is baked."""
-    file = resources.files("cutis.data").joinpath("weights", "aliaga2022.safetensors")
+    return networks("aliaga2022").encoder
+
+
+def networks(name: str) -> Autoencoder:
+    """The networks of a model; CutisError for models that are none."""
+    if name.endswith(".safetensors") and Path(name).is_file():
+        return load_weights(Path(name))
+    if name != "aliaga2022":
+        raise CutisError(
+            f"{name} is not a pair of networks; use aliaga2022 or a .safetensors file of weights"
+        )
+    file = resources.files("cutis.data").joinpath("weights", f"{name}.safetensors")
     with resources.as_file(file) as path:
-        return load_weights(path).encoder
-
-
-def _networks(name: str, file: Path) -> Model:
-    from cutis.inverse.units_kernel import from_units
-
-    networks = load_weights(file)
-    return Model(
-        name, _in_units(networks.encoder), lambda skins: networks.decoder(from_units(skins))
-    )
+        return load_weights(path)
 
 
 def _in_units(encode: Conversion) -> Conversion:

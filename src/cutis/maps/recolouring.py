@@ -18,7 +18,7 @@ from cutis.maps.edits import Edit
 from cutis.maps.skin_maps import DARKEST
 from cutis.optics import NAMES
 
-WHOLE, NONE = 5.0, 15.0
+WHOLE, NONE = 8.0, 20.0
 """ΔE00 between a colour and the model's up to which an edit is whole, and from which there is
 none."""
 

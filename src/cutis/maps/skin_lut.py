@@ -84,13 +84,12 @@ def skin_lut(
     matrix = TO_UVW / (STEPS * step)[:, None]
     shift = -first / (STEPS * step)
     margin = AROUND / (size - 1)
-    knots = [(0, 0.0), (starts, margin), (ends, 1 - margin), (STEPS, 1.0)]
     spread, gather = np.empty((STEPS + 1, 3)), np.empty((size, 3))
     for axis in range(3):
-        at = [np.broadcast_to(k, 3)[axis] for k, _ in knots]
-        to = [value for _, value in knots]
-        spread[:, axis] = np.interp(np.arange(STEPS + 1), at, to)
-        gather[:, axis] = np.interp(np.linspace(0, 1, size), to, np.array(at) / STEPS)
+        at = np.array([0.0, starts[axis], ends[axis], STEPS]) / STEPS
+        to = np.array([0.0, margin, 1.0 - margin, 1.0])
+        spread[:, axis] = np.interp(np.linspace(0, 1, STEPS + 1), at, to)
+        gather[:, axis] = np.interp(np.linspace(0, 1, size), to, at)
     logs = (gather[_grid(size), np.arange(3)] - shift) @ np.linalg.inv(matrix).T
     colours = (np.exp(logs) - OFFSET) @ to_srgb
     captured = np.maximum(colours, 0).astype(np.float32)
