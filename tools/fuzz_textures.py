@@ -75,13 +75,17 @@ def work(
     """Damages and reads until no numbers are left."""
     readers = {how: Reader(how) for how in ("read", "estimate")}
     originals: dict[Path, Outcome] = {}
+    kinds = [
+        [path for path in whole if path.suffix == suffix]
+        for suffix in sorted({path.suffix for path in whole})
+    ]
     while True:
         try:
             number = numbers.get_nowait()
         except queue.Empty:
             break
         random = Random(f"{seed}:{number}")
-        origin, other = random.choice(whole), random.choice(whole)
+        origin, other = random.choice(random.choice(kinds)), random.choice(random.choice(kinds))
         damage, content = mutate(origin.read_bytes(), other.read_bytes(), random)
         path = scratch / f"{seed}-{number}-{origin.name.replace('.skin', '-skin')}"
         path.write_bytes(content)

@@ -10,8 +10,8 @@ import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
 
-from cutis.textures.headers import check_size, image_format
-from cutis.textures.problem import check_name, problem
+from cutis.textures.headers import image_format
+from cutis.textures.problem import check_name, check_size, problem
 
 STORED_AS = {
     "uint8": "uint8",

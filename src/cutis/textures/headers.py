@@ -1,16 +1,15 @@
 """What the first bytes of an image say that the decoder does not.
 
-OpenImageIO expands palettes and converts the CMYK of PSD without a word, tries every plug-in it has
-on a file it cannot place (among them `null`, which makes up an image for any name that ends so),
-and its PNG decoder prints damage to the terminal. Looking first avoids all of it.
+OpenImageIO expands palettes without a word, makes RGB of the CMYK and single bits of a PSD, tries
+every plug-in it has on a file it cannot place (among them `null`, which makes up an image for any
+name that ends so), and its PNG decoder prints damage to the terminal. Looking first avoids all
+that.
 """
 
-import os
 import struct
-import zlib
 from pathlib import Path
-from typing import BinaryIO
 
+from cutis.textures.png import check_png, png_colour_type
 from cutis.textures.problem import problem, reason
 
 SIGNATURES = (
@@ -27,10 +26,10 @@ SIGNATURES = (
 )
 EXTENSIONS = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".tx", ".exr", ".dpx", ".psd")
 """What files of these formats are usually called, lower case."""
-PNG_PALETTE = 3
-PSD_CMYK = b"\0\4"
-LARGEST = 32768  # texels along a side
-_PIECE = 1 << 20
+
+_PNG_PALETTE = 3
+_PSD_BITS, _PSD_GREY, _PSD_PALETTE, _PSD_RGB, _PSD_CMYK = range(5)
+_PSD_HEADER = 26
 
 
 def image_format(path: Path) -> str:
@@ -43,9 +42,9 @@ def image_format(path: Path) -> str:
             start = file.read(8)
             found = next((name for magic, name in SIGNATURES if start.startswith(magic)), None)
             if found == "png":
-                _check_png(path, file)
-            elif found == "psd" and file.read(18)[16:] == PSD_CMYK:
-                raise problem(path, "is CMYK, made for print; convert it to RGB")
+                check_png(path, file)
+            elif found == "psd":
+                _check_psd(path, start + file.read(_PSD_HEADER - len(start)))
     except FileNotFoundError as error:
         raise problem(path, "no such file; check the name") from error
     except IsADirectoryError as error:
@@ -64,44 +63,29 @@ def image_format(path: Path) -> str:
     return found
 
 
-def png_colour_type(path: Path) -> int:
-    """Colour type in the header of a PNG that `image_format` accepted: 3 is a palette."""
-    with open(path, "rb") as file:
-        return file.read(26)[25]
+def stored_otherwise(path: Path, file_format: str) -> str:
+    """What a PNG or PSD stores that OpenImageIO turns into RGB: "palette", "grey", or "" if none.
+
+    For a file that `image_format` accepted.
+    """
+    if file_format == "png":
+        return "palette" if png_colour_type(path) == _PNG_PALETTE else ""
+    if file_format == "psd":
+        with open(path, "rb") as file:
+            mode = _psd_mode(file.read(_PSD_HEADER))
+        return {_PSD_BITS: "grey", _PSD_PALETTE: "palette"}.get(mode, "")
+    return ""
 
 
-def _check_png(path: Path, file: BinaryIO) -> None:
-    """Walk the chunks of a PNG: all there, checksums right, a sensible size in the header."""
-    end, ordinal, kind = os.fstat(file.fileno()).st_size, 0, b""
-    while kind != b"IEND":
-        header = file.read(8)
-        if len(header) < 8:
-            raise problem(
-                path, "is truncated: the end of the PNG is missing; copy or export it again"
-            )
-        length, kind = struct.unpack(">I4s", header)
-        if file.tell() + length + 4 > end:
-            raise problem(
-                path, "is truncated: the end of the PNG is missing; copy or export it again"
-            )
-        checksum, first = zlib.crc32(kind), b""
-        for offset in range(0, length, _PIECE):
-            piece = file.read(min(_PIECE, length - offset))
-            first = first or piece
-            checksum = zlib.crc32(piece, checksum)
-        if struct.unpack(">I", file.read(4))[0] != checksum:
-            raise problem(path, "is damaged: a PNG checksum is wrong; copy or export it again")
-        if ordinal == 0:
-            if kind != b"IHDR" or length != 13:
-                raise problem(path, "is damaged: the PNG header is missing; export it again")
-            check_size(path, *struct.unpack(">II", first[:8]))
-        ordinal += 1
+def _psd_mode(header: bytes) -> int:
+    return int(struct.unpack(">H", header[24:26])[0])
 
 
-def check_size(path: Path, width: int, height: int) -> None:
-    """Refuse an image without texels or with a side longer than `LARGEST` texels."""
-    if width < 1 or height < 1:
-        raise problem(path, f"has no texels ({width} × {height}); export it again")
-    if max(width, height) > LARGEST:
-        what = f"claims {width} × {height} texels, the limit is {LARGEST} × {LARGEST}"
-        raise problem(path, f"{what}; split it into tiles, or export it again if it is damaged")
+def _check_psd(path: Path, header: bytes) -> None:
+    if len(header) < _PSD_HEADER:
+        raise problem(path, "is truncated: its header is not whole; copy or export it again")
+    mode = _psd_mode(header)
+    if mode == _PSD_CMYK:
+        raise problem(path, "is CMYK, made for print; convert it to RGB")
+    if mode not in (_PSD_BITS, _PSD_GREY, _PSD_PALETTE, _PSD_RGB):
+        raise problem(path, f"stores another colour model (mode {mode}); convert it to RGB")

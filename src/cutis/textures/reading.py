@@ -11,7 +11,7 @@ import OpenImageIO as oiio
 
 from cutis.errors import CutisError
 from cutis.textures.decoding import Decoder, check_finite, check_memory, is_palette, photometric
-from cutis.textures.headers import PNG_PALETTE, png_colour_type
+from cutis.textures.headers import stored_otherwise
 from cutis.textures.problem import problem
 from cutis.textures.spaces import colour_space, declared_space
 from cutis.textures.texture import Texture, bands, colour_channels
@@ -41,9 +41,10 @@ class TextureFile:
         self.format = self._source.file_format
         self.shape = self._source.shape
         self.channels = tuple(spec.channelnames)
-        if is_palette(spec) or (self.format == "png" and png_colour_type(path) == PNG_PALETTE):
+        stored = stored_otherwise(path, self.format)
+        if is_palette(spec) or stored == "palette":
             raise problem(path, "stores a palette of at most 256 colours; convert it to RGB")
-        if spec.nchannels < 3 or photometric(spec) in (0, 1):
+        if spec.nchannels < 3 or photometric(spec) in (0, 1) or stored == "grey":
             raise problem(path, "is a grey image; an RGB image is needed, so convert it")
         try:
             rgb, alpha = colour_channels(spec.channelnames)

@@ -118,6 +118,12 @@ def _png_field(content: bytes, other: bytes, random: Random) -> bytes:
     return _png_join(chunks)
 
 
+_PNG_CHUNKS = (
+    b"PLTE tRNS iCCP tEXt zTXt iTXt eXIf cHRM sRGB gAMA pHYs bKGD IDAT IEND sBIT hIST acTL "
+    b"tIME sPLT IHDR CgBI a1!?"
+).split()
+
+
 def _png_order(content: bytes, other: bytes, random: Random) -> bytes:
     """Chunks removed, doubled, in another order, with other names, or taken from another PNG."""
     chunks = _png_chunks(content)
@@ -129,9 +135,7 @@ def _png_order(content: bytes, other: bytes, random: Random) -> bytes:
     elif how == 2:
         random.shuffle(chunks)
     elif how == 3:
-        names = (b"PLTE", b"tRNS", b"iCCP", b"tEXt", b"zTXt", b"iTXt", b"eXIf", b"cHRM", b"sRGB",
-                 b"gAMA", b"pHYs", b"bKGD", b"IDAT", b"IEND", b"sBIT", b"hIST", b"acTL")  # fmt: skip
-        chunks[at] = random.choice(names), chunks[at][1]
+        chunks[at] = random.choice(_PNG_CHUNKS), chunks[at][1]
     elif other.startswith(b"\x89PNG"):
         chunks.insert(random.randrange(1, len(chunks)), random.choice(_png_chunks(other)))
     return _png_join(chunks)

@@ -106,7 +106,7 @@ class _Terminal:
     """What this process and its libraries print, caught in a file."""
 
     def __init__(self) -> None:
-        self._caught = tempfile.TemporaryFile()
+        self._caught = tempfile.TemporaryFile()  # noqa: SIM115
         for stream in (1, 2):
             os.dup2(self._caught.fileno(), stream)
         self._flush: Callable[[Any], int] = ctypes.CDLL(None).fflush

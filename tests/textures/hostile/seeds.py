@@ -48,8 +48,9 @@ def write(path: Path, values: np.ndarray, names: str = "", tile: int = 0, **attr
             pair = value if isinstance(value, tuple) else (value,)
             spec.attribute(name.replace("__", ":"), *pair)
     out = oiio.ImageOutput.create(str(path))
-    good = out.open(str(path), spec) and out.write_image(np.ascontiguousarray(values))
-    assert good and out.close(), f"{path}: {out.geterror()}"
+    assert out.open(str(path), spec), f"{path}: {out.geterror()}"
+    assert out.write_image(np.ascontiguousarray(values)), f"{path}: {out.geterror()}"
+    assert out.close()
     out.geterror()
     return path
 
