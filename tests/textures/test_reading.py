@@ -363,7 +363,7 @@ def test_psd_with_transparency(tmp_path, make):
 
 
 @pytest.mark.parametrize(
-    ("mode", "count", "match"), [(4, 4, "CMYK"), (1, 1, "grey"), (9, 3, "color mode 9")]
+    ("mode", "count", "match"), [(4, 4, "CMYK"), (1, 1, "grey"), (9, 3, "mode 9")]
 )
 def test_psd_of_other_colour(tmp_path, make, one_line, mode, count, match):
     path = make.psd(tmp_path / "a.psd", np.zeros((4, 4, count), np.uint8), mode)
