@@ -55,3 +55,9 @@ def test_ratios_are_to_the_faster_form_of_the_rival():
     assert decode == "decode 0.100 s 0.100 s 20.00 100.0 % 5 MB"
     assert both == "both 0.500 s 20.00"
     assert spectra == "exact space 41 bands 1.000 s 1.000 s 10.0 % 5 MB"
+
+
+def test_a_device_that_is_unknown(cutis):
+    ended = cutis("bench", "--size", "16", "--device", "abacus")
+    assert (ended.code, ended.out) == (1, "")
+    assert ended.err == "cutis: unknown device 'abacus'; choose cpu or cuda\n"

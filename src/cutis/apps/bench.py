@@ -18,6 +18,9 @@ RIVALS = ("PyTorch, one call", "PyTorch, tiles")
 def bench(
     size: Annotated[int, typer.Option(min=16, max=8192, help="Texels along an edge.")] = 2048,
     repeats: Annotated[int, typer.Option(min=1, help="Runs of each; the best counts.")] = 5,
+    device: Annotated[
+        str, typer.Option(help="cuda: the networks of aliaga2022 on a CUDA device too.")
+    ] = "cpu",
     quiet: options.Quiet = False,
 ) -> None:
     """Time encoding and decoding of SIZE x SIZE float32 texels, all in one run and in turns.
@@ -31,7 +34,7 @@ def bench(
     from cutis.apps.console import out, steps
     from cutis.apps.timing import copy_bandwidth, matrix_rate, race
 
-    entries, missing, threads = contestants(size * size)
+    entries, missing, threads = contestants(size * size, device)
     with steps(len(entries) * (repeats + 1), quiet) as progress:
         for entry in race(entries, repeats):
             progress.step(f"{entry.system}: {entry.step}")
@@ -47,7 +50,7 @@ def bench(
         out.print(line)
 
 
-def contestants(count: int) -> tuple[list["Timed"], list[str], int]:
+def contestants(count: int, device: str = "cpu") -> tuple[list["Timed"], list[str], int]:
     """What is timed on `count` texels, a line for each that is not installed, the threads."""
     import numba
 
@@ -55,7 +58,9 @@ def contestants(count: int) -> tuple[list["Timed"], list[str], int]:
     from cutis.apps.rivals import onnx_step, random_networks, tiled, torch_step
     from cutis.apps.timing import Timed
     from cutis.inverse import load_model
+    from cutis.inverse.device import check_device
 
+    check_device(device)
     threads = numba.get_num_threads()
     space, networks = albedo_space(), random_networks()
     skins = uniform(count, seed=0).astype("float32")
@@ -70,6 +75,9 @@ def contestants(count: int) -> tuple[list["Timed"], list[str], int]:
     for name in ("default", "aliaga2022"):
         model = load_model(name)
         add(name, model.encode, model.decode)
+    if device != "cpu":
+        model = load_model("aliaga2022", device)
+        add(f"aliaga2022, {device}", model.encode, model.decode)
     missing = []
     for name, make, extra in (
         ("PyTorch", torch_step, "train"),

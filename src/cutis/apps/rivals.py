@@ -5,11 +5,12 @@ matter what they are. Both get the same weights, and the threads of everything e
 """
 
 from collections.abc import Callable
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cutis.inverse.device import torch_network
 from cutis.inverse.network import Autoencoder, Perceptron, layer_sizes
 
 Array: TypeAlias = NDArray[np.float32]
@@ -37,22 +38,9 @@ def random_networks(seed: int = 0) -> Autoencoder:
 def torch_step(network: Perceptron, threads: int) -> Step:
     """The network in PyTorch on the CPU; ModuleNotFoundError where PyTorch is not."""
     import torch
-    from torch import nn
 
     torch.set_num_threads(threads)
-    parts: list[Any] = []
-    for weight, bias in zip(network.weights, network.biases, strict=True):
-        linear = nn.Linear(weight.shape[1], weight.shape[0])
-        linear.weight.data = torch.from_numpy(weight)
-        linear.bias.data = torch.from_numpy(bias)
-        parts += [linear, nn.Tanh()]
-    model = nn.Sequential(*parts[:-1], nn.Sigmoid()).eval()
-
-    def step(values: Array) -> Array:
-        with torch.inference_mode():
-            return np.asarray(model(torch.from_numpy(values)).numpy())
-
-    return step
+    return torch_network(network, "cpu")
 
 
 def onnx_step(network: Perceptron, threads: int) -> Step:

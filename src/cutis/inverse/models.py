@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from cutis.albedo.colour_table import colour_table
 from cutis.errors import CutisError
+from cutis.inverse.device import check_device, torch_network
 from cutis.inverse.lookup import SHAPES, lookup_tensor
 from cutis.inverse.network import Autoencoder, Perceptron, load_weights
 
@@ -59,8 +60,19 @@ def _in_bands(
 
 
 @cache
-def load_model(name: str = "default") -> Model:
-    """The model called `name`, or of the weights file `name`; CutisError when there is none."""
+def load_model(name: str = "default", device: str = "cpu") -> Model:
+    """The model called `name`, or of the weights file `name`; CutisError when there is none.
+
+    Networks may run on another `device`, "cuda"; tables are read by the processor. CutisError when
+    there is no such device, or the model is none of networks.
+    """
+    if device != "cpu":
+        check_device(device)
+        if name in (*SHAPES, "default", "kubelka-munk"):
+            raise CutisError(
+                f"the model {name} is a table, read by the processor; --device cuda is for "
+                "aliaga2022 and files of weights"
+            )
     weights = resources.files("cutis.data").joinpath("weights")
     if name == "default":
         from cutis.inverse.baked import load_baked
@@ -77,10 +89,7 @@ def load_model(name: str = "default") -> Model:
         baseline = kubelka_munk_inverse()
         return Model(name, _in_units(baseline.encode), baseline.decode)
     if name in MODELS or (name.endswith(".safetensors") and Path(name).is_file()):
-        from cutis.inverse.units_kernel import from_units
-
-        pair = networks(name)
-        return Model(name, _in_units(pair.encoder), lambda skins: pair.decoder(from_units(skins)))
+        return _from_networks(name, networks(name), device)
     raise CutisError(
         f"unknown model {name!r}; choose {', '.join(MODELS)} or a .safetensors file of weights"
     )
@@ -102,6 +111,16 @@ def networks(name: str) -> Autoencoder:
     file = resources.files("cutis.data").joinpath("weights", f"{name}.safetensors")
     with resources.as_file(file) as path:
         return load_weights(path)
+
+
+def _from_networks(name: str, pair: Autoencoder, device: str) -> Model:
+    from cutis.inverse.units_kernel import from_units
+
+    encoder: Conversion = pair.encoder
+    decoder: Conversion = pair.decoder
+    if device != "cpu":
+        encoder, decoder = (torch_network(n, device) for n in (pair.encoder, pair.decoder))
+    return Model(name, _in_units(encoder), lambda skins: decoder(from_units(skins)))
 
 
 def _in_units(encode: Conversion) -> Conversion:
