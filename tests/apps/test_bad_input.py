@@ -137,6 +137,7 @@ def test_masks(command, values, message, maps, cutis, one_line, tmp_path):
         (["--white", "1,1,99"], "white takes none, auto or three numbers"),
         (["--exposure", "bright"], "--exposure takes none, auto or one gain"),
         (["--exposure", "nan"], "exposure takes none, auto or one number"),
+        (["--device", "gpu"], "unknown device"),
         (["--colorspace", "log"], "unknown colour space 'log'"),
         (["--model", "nobody"], "unknown model 'nobody'"),
     ],

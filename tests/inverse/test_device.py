@@ -7,7 +7,7 @@ import pytest
 
 from cutis.albedo import uniform
 from cutis.errors import CutisError
-from cutis.inverse import load_model
+from cutis.inverse import load_model, on_device
 from cutis.inverse.device import check_device, torch_network
 from cutis.inverse.models import shipped_encoder
 
@@ -54,3 +54,16 @@ def test_unknown_devices_and_models_that_are_tables(monkeypatch):
     monkeypatch.setattr("cutis.inverse.models.check_device", lambda device: None)
     with pytest.raises(CutisError, match="default is a table"):
         load_model("default", "cuda")
+
+
+def test_on_device_reaches_models_loaded_inside(monkeypatch):
+    """With a device that PyTorch has everywhere: the block says where networks run."""
+    pytest.importorskip("torch")
+    seen = []
+    monkeypatch.setattr("cutis.inverse.models.check_device", lambda device: seen.append(device))
+    rgb = np.full((5, 3), 0.4, np.float32)
+    here = load_model("aliaga2022").encode(rgb)
+    with on_device("meta"), pytest.raises(NotImplementedError):
+        load_model("aliaga2022").encode(rgb)  # PyTorch's device without memory
+    assert seen == ["meta", "meta"]
+    np.testing.assert_array_equal(load_model("aliaga2022").encode(rgb), here)

@@ -33,6 +33,9 @@ def estimate(
     colorspace: options.Colorspace = "auto",
     ocio: options.Ocio = None,
     output_colorspace: options.OutputColorspace = None,
+    device: Annotated[
+        str, typer.Option(help="Where networks run: cpu, or cuda with PyTorch for it.")
+    ] = "cpu",
     half: Annotated[bool, typer.Option(help="Store the maps as half instead of float.")] = False,
     report: Annotated[bool, typer.Option("--report", help="Also write NAME.report.html.")] = False,
     regions: Annotated[
@@ -81,16 +84,20 @@ def estimate(
     ocio = ocio or configured() or ""  # said to workers, who may have another $OCIO
     settings = Settings(
         white, exposure, illuminant, model, colorspace, ocio, output_colorspace, half, report,
+        device,
     )  # fmt: skip
     # what is wrong with the flags is said now rather than after reading
     light_conversion(illuminant)
     options.white_gains(white), options.exposure_gain(exposure)
-    load_model(model)
+    load_model(model, device)
     for name in (None if colorspace == "auto" else colorspace, output_colorspace):
         if name is not None:
             colour_space(name, ocio)
     sets = [
-        [Task(face, companion(mask, face), output, settings, regions) for face in captures]
+        [
+            Task(face, companion(mask, face), output, settings, companion(regions, face))
+            for face in captures
+        ]
         for captures in capture_sets(faces, udim, sequence)
     ]
     runner: Runner = here

@@ -37,6 +37,7 @@ class Settings:
     output_colorspace: str | None = None
     half: bool = False
     page: bool = False
+    device: str = "cpu"
 
 
 @dataclass(frozen=True)
@@ -125,6 +126,7 @@ def estimate_and_show(
     import cutis.maps as maps
     from cutis.apps.previews import Previews
     from cutis.colour import LINEAR
+    from cutis.inverse import on_device
     from cutis.textures import channel_writer, colour_space, replacing, sweep
 
     how, stem = task.settings, task.stem
@@ -133,6 +135,7 @@ def estimate_and_show(
     space = LINEAR if name is None else colour_space(name, how.ocio)
     seen = False
     with contextlib.ExitStack() as stack:
+        stack.enter_context(on_device(how.device))
         texture, mask = stack.enter_context(task.opened())
         stack.enter_context(options.made_folder(task.output))
         sweep(task.output)

@@ -3,7 +3,7 @@
 from cutis.inverse.calibration import Calibration, calibrate
 from cutis.inverse.fit import explain, fit
 from cutis.inverse.metamers import Family, colours_under, metamers, spread
-from cutis.inverse.models import MODELS, Model, load_model
+from cutis.inverse.models import MODELS, Model, load_model, on_device
 
 __all__ = [
     "MODELS",
@@ -16,5 +16,6 @@ __all__ = [
     "fit",
     "load_model",
     "metamers",
+    "on_device",
     "spread",
 ]

@@ -5,7 +5,9 @@
 are its look-up tensors of 256 000 and 55 296 skins, `kubelka-munk` the two-parameter baseline.
 """
 
-from collections.abc import Callable
+import contextlib
+from collections.abc import Callable, Iterator
+from contextvars import ContextVar
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
@@ -59,13 +61,31 @@ def _in_bands(
     return out.reshape(*array.shape[:-1], size)
 
 
-@cache
-def load_model(name: str = "default", device: str = "cpu") -> Model:
+_DEVICE: ContextVar[str] = ContextVar("device", default="cpu")
+
+
+@contextlib.contextmanager
+def on_device(device: str) -> Iterator[None]:
+    """Networks run on `device`, cpu or cuda, inside the block."""
+    check_device(device)
+    before = _DEVICE.set(device)
+    try:
+        yield
+    finally:
+        _DEVICE.reset(before)
+
+
+def load_model(name: str = "default", device: str | None = None) -> Model:
     """The model called `name`, or of the weights file `name`; CutisError when there is none.
 
-    Networks may run on another `device`, "cuda"; tables are read by the processor. CutisError when
-    there is no such device, or the model is none of networks.
+    Networks may run on another `device`, "cuda", which is that of `on_device` unless given; tables
+    are read by the processor. CutisError when there is no such device, or the model is a table.
     """
+    return _load(name, _DEVICE.get() if device is None else device)
+
+
+@cache
+def _load(name: str, device: str) -> Model:
     if device != "cpu":
         check_device(device)
         if name in (*SHAPES, "default", "kubelka-munk"):
