@@ -23,7 +23,7 @@ def test_bench_on_a_few_texels(cutis):
     ended = cutis("bench", "--size", "16", "--repeats", "1")
     assert (ended.code, ended.err) == (0, "")
     assert "16 × 16 texels" in ended.out
-    for word in ("default", "aliaga2022", "exact space", "41 bands", "GFLOP/s", "of copying"):
+    for word in ("default", "aliaga2022", "exact space", "41 bands", "GFLOP/s", "copying"):
         assert word in ended.out
 
 
@@ -33,7 +33,7 @@ def test_packages_that_are_missing_are_named(cutis, monkeypatch):
     ended = cutis("bench", "--size", "16", "--repeats", "1")
     assert ended.code == 0
     assert "PyTorch is not timed: torch is missing; pip install 'cutis[train]'\n" in ended.out
-    assert "ONNX Runtime is not timed: onnx is missing; pip install 'cutis[onnx]'\n" in ended.out
+    assert "ONNX is not timed: onnx is missing; pip install 'cutis[onnx]'\n" in ended.out
     assert "ratio:" not in ended.out
 
 
@@ -50,7 +50,7 @@ def test_ratios_are_to_the_faster_form_of_the_rival():
     assert fastest_rival(entries) == "PyTorch, tiles"
     assert fastest_rival(entries[:2]) is None
     heading, encode, decode, both, *_, spectra = rows(table(entries, 1e10))
-    assert heading == "best median ratio of copying memory"
+    assert heading == "best median ratio copying memory"
     assert encode == "default encode 0.400 s 0.500 s 20.00 25.0 % 5 MB"
     assert decode == "decode 0.100 s 0.100 s 20.00 100.0 % 5 MB"
     assert both == "both 0.500 s 20.00"

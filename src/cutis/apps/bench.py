@@ -45,7 +45,7 @@ def bench(
     )
     out.print(table(entries, bandwidth))
     if rival := fastest_rival(entries):
-        out.print(f"ratio: how many times as fast as {rival}; of copying: of the speed of copying")
+        out.print(f"ratio: how many times as fast as {rival}; copying: share of its speed")
     for line in missing:
         out.print(line)
 
@@ -81,7 +81,7 @@ def contestants(count: int, device: str = "cpu") -> tuple[list["Timed"], list[st
     missing = []
     for name, make, extra in (
         ("PyTorch", torch_step, "train"),
-        ("ONNX Runtime", onnx_step, "onnx"),
+        ("ONNX", onnx_step, "onnx"),
     ):
         try:
             encode, decode = (make(n, threads) for n in (networks.encoder, networks.decoder))
@@ -110,7 +110,7 @@ def table(entries: list["Timed"], bandwidth: float) -> "Table":
     rival = fastest_rival(entries)
     theirs = {e.step: e.best for e in by_system.get(rival or "", [])}
     result = Table(box=None)
-    for heading in ("", "", "best", "median", "ratio", "of copying", "memory"):
+    for heading in ("", "", "best", "median", "ratio", "copying", "memory"):
         result.add_column(heading, justify="right" if heading else "left", no_wrap=True)
     for system, own in by_system.items():
         for entry in own:
