@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.floating]
 
-SAMPLES = 24
+SAMPLES = 12
 """Places in a cell at which the function is looked at."""
 STAY = 0.02
 """Pull of a node towards where it was, against that of the samples around a typical one."""

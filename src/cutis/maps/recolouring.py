@@ -6,6 +6,7 @@ of skin: it fades as the model's own colour moves away from the one given.
 """
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,24 +43,28 @@ def recolouring(
         if edit.where != "everywhere":
             raise CutisError(f"{edit}: a LUT cannot tell places apart; leave this edit out")
     known = calibration or Calibration()
+    light = replace(known, gains=(1.0, 1.0, 1.0))
     inverse = load_model(model)
 
     def recoloured(captured: NDArray[np.floating]) -> NDArray[np.float32]:
         result = np.array(captured, dtype=np.float32)
         colours = known.apply(result)
         skins = inverse.encode(colours)
-        edited = skins.copy()
-        weight = np.full(len(skins), amount, dtype=np.float32)
+        before = inverse.decode(skins)
+        share = fading(delta_e(before, np.maximum(colours, 0.0)))
+        near = np.flatnonzero(share)
+        edited = skins[near]
+        weight = np.full(len(near), amount, dtype=np.float32)
         for edit in edits:
             column = NAMES.index(edit.parameter)
             edited[:, column] = edit(edited[:, column], weight)[0]
-        before, after = inverse.decode(skins), inverse.decode(edited)
-        share = fading(delta_e(before, np.maximum(colours, 0.0)))
-        changed = (edited != skins).any(axis=1) & (share > 0)
-        if known.conversion is not None:  # gains cancel, a matrix does not
-            before, after = known.undo(before), known.undo(after)
-        ratio = after[changed] / np.maximum(before[changed], DARKEST)
-        result[changed] *= 1 + share[changed, None] * (ratio - 1)
+        changed = (edited != skins[near]).any(axis=1)
+        near = near[changed]
+        old, new = before[near], inverse.decode(edited[changed])
+        if light.conversion is not None:  # gains cancel, a matrix does not
+            old, new = light.undo(old), light.undo(new)
+        ratio = new / np.maximum(old, DARKEST)
+        result[near] *= 1 + share[near, None] * (ratio - 1)
         return result
 
     return recoloured
