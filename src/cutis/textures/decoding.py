@@ -11,7 +11,8 @@ import OpenImageIO as oiio
 from numpy.typing import NDArray
 
 from cutis.textures.headers import image_format
-from cutis.textures.problem import check_name, check_size, problem
+from cutis.textures.limits import check_claim, check_size
+from cutis.textures.problem import check_name, problem, shorten
 
 STORED_AS = {
     "uint8": "uint8",
@@ -23,6 +24,11 @@ STORED_AS = {
 _RGB_PHOTOMETRICS = (2, 6)  # RGB, and YCbCr, which decodes to RGB
 _GREY_PHOTOMETRICS = (0, 1)
 _PALETTE = 3
+# Whose limits are known; others (DWA, Zstandard) have next to none.
+_PACKING = {
+    *("none", "packbits", "lzw", "zip", "jpeg"),  # TIFF
+    *("rle", "zips", "piz", "pxr24", "b44", "b44a"),  # OpenEXR, which has none and zip too
+}
 
 
 class Decoder:
@@ -51,6 +57,7 @@ class Decoder:
             self.spec: oiio.ImageSpec = source.spec().copy()
             "".join(self.spec.channelnames).encode()  # what is not UTF-8 comes as lone surrogates
             self.stored_as = _check(path, self.spec)
+            _check_claim(path, self.file_format, self.spec, self.stored_as)
             self.step = self.spec.tile_height or int(
                 self.spec.get_int_attribute("oiio:RowsPerChunk", 1)
             )
@@ -187,9 +194,23 @@ def _check(path: Path, spec: oiio.ImageSpec) -> str:
     return STORED_AS[str(spec.format)]
 
 
+def _check_claim(path: Path, file_format: str, spec: oiio.ImageSpec, stored_as: str) -> None:
+    """Refuse a header that claims more texels than its file can hold, before memory is taken."""
+    packing = spec.get_string_attribute("compression")
+    if file_format in ("tiff", "openexr") and packing not in _PACKING:
+        return
+    if spec.get_int_attribute("oiio:BitsPerSample", 8) < 8:
+        return
+    check_claim(path, spec.width, spec.height, _size(spec, stored_as))
+
+
+def _size(spec: oiio.ImageSpec, stored_as: str) -> int:
+    return int(spec.image_pixels() * spec.nchannels * oiio.TypeDesc(stored_as).size())
+
+
 def check_memory(path: Path, spec: oiio.ImageSpec, stored_as: str) -> None:
     """Refuse to hold an image that free memory has no room for."""
-    need = spec.image_pixels() * spec.nchannels * oiio.TypeDesc(stored_as).size()
+    need = _size(spec, stored_as)
     free = available_memory()
     if free is not None and need > free:
         what = f"needs {need / 2**30:.1f} GiB of memory, {free / 2**30:.1f} GiB is free"
@@ -214,5 +235,5 @@ def _unreadable(path: Path, error: str) -> Exception:
     first = next((line.strip() for line in error.splitlines() if line.strip()), "")
     if "image size" in first and "exceeds" in first:
         return problem(path, f"is too large ({first}); split it into tiles")
-    detail = f" ({first})" if first else ""
+    detail = f" ({shorten(first)})" if first else ""
     return problem(path, f"is damaged or truncated{detail}; copy or export it again")

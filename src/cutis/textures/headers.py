@@ -2,13 +2,14 @@
 
 OpenImageIO expands palettes without a word, makes RGB of the CMYK and single bits of a PSD, tries
 every plug-in it has on a file it cannot place (among them `null`, which makes up an image for any
-name that ends so), and its PNG decoder prints damage to the terminal. Looking first avoids all
-that.
+name that ends so), unpacks whole JPEGs on opening them, and its PNG decoder prints damage to the
+terminal. Looking first avoids all that.
 """
 
 import struct
 from pathlib import Path
 
+from cutis.textures.jpeg import check_jpeg
 from cutis.textures.png import check_png, png_colour_type
 from cutis.textures.problem import problem, reason
 
@@ -43,6 +44,8 @@ def image_format(path: Path) -> str:
             found = next((name for magic, name in SIGNATURES if start.startswith(magic)), None)
             if found == "png":
                 check_png(path, file)
+            elif found == "jpeg":
+                check_jpeg(path, file)
             elif found == "psd":
                 _check_psd(path, start + file.read(_PSD_HEADER - len(start)))
     except FileNotFoundError as error:

@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import BinaryIO
 
 from cutis.errors import CutisError
-from cutis.textures.problem import check_size, problem
+from cutis.textures.limits import check_size
+from cutis.textures.problem import problem
 
 _PALETTE = 3
 _CHANNELS = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from cutis.colour.spaces import RGBSpace, Space
 from cutis.colour.transfer import decode_srgb
 from cutis.errors import CutisError
+from cutis.textures.problem import shorten
 
 STORED_TYPES = ("uint8", "uint16", "float16", "float32")
 _BAND = 1 << 19  # texels at a time: about 50 MB of temporaries
@@ -155,11 +156,11 @@ def colour_channels(names: Sequence[str]) -> tuple[list[int], int | None]:
     if "" in complete:
         complete = [""]
     if len(complete) > 1:
-        listed = ", ".join(sorted(complete))
+        listed = shorten(", ".join(sorted(complete)))
         raise CutisError(f"has colour in several layers ({listed}); keep or rename one to R, G, B")
     if not complete:
         raise CutisError(
-            f"has no R, G, B channels, only {', '.join(names)}; an RGB image is needed"
+            f"has no R, G, B channels, only {shorten(', '.join(names))}; an RGB image is needed"
         )
     found = layers[complete[0]]
     return [found["r"], found["g"], found["b"]], found.get("a")

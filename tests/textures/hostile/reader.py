@@ -24,6 +24,7 @@ from typing import Any
 MOST_MEMORY = 1.5 * 2**30
 ADDRESSES = 24 * 2**30  # so that no reader brings the machine down
 SECONDS = 10.0
+_LONGEST = 600  # characters of a message
 _ESTIMATE_SECONDS = 120.0  # the whole command, its start among it, on a busy machine
 
 
@@ -176,8 +177,10 @@ def _read(path: Path) -> Outcome:
         except CutisError as error:
             outcome.results[name] = str(error)
             outcome.good[name] = False
-            if len(str(error).splitlines()) != 1:
+            if len(str(error).splitlines()) != 1 or not str(error).isprintable():
                 outcome.findings.append(f"lines {error}")
+            elif len(str(error)) > _LONGEST:
+                outcome.findings.append(f"long {error}")
             elif path.name not in str(error):
                 outcome.findings.append(f"no name {error}")
         except BaseException as error:
@@ -217,7 +220,11 @@ def _estimate(path: Path) -> Outcome:
         outcome.good["estimate"] = code == 0
         if code not in (0, 1):
             outcome.findings.append(f"command exit {code}: {errors[:300]}")
-        if code and (len(errors.splitlines()) != 1 or not errors.startswith("cutis: ")):
+        if code and (
+            len(errors.splitlines()) != 1
+            or not errors[:-1].isprintable()
+            or not errors.startswith("cutis: ")
+        ):
             outcome.findings.append(f"printed {errors[:300]!r}")
         if code == 0 and errors:
             outcome.findings.append(f"printed {errors[:300]!r}")
