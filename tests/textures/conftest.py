@@ -2,6 +2,7 @@
 
 import runpy
 import struct
+import sys
 import zlib
 from pathlib import Path
 from types import SimpleNamespace
@@ -9,6 +10,8 @@ from types import SimpleNamespace
 import numpy as np
 import OpenImageIO as oiio
 import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))  # for the package `hostile`
 
 NAMES = {1: ["Y"], 2: ["Y", "A"], 3: ["R", "G", "B"], 4: ["R", "G", "B", "A"]}
 TYPES = {"float16": "half", "float32": "float", "float64": "double"}

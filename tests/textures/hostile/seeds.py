@@ -166,7 +166,8 @@ def tiff(width: int, height: int, samples: int, bits: int = 8, photometric: int 
     `big` makes it a BigTIFF, `data` are the bytes of the strip.
     """
     big = more.get("big", False)
-    data = more.get("data", b"\x40" * (-(-width * samples * bits // 8) * height))
+    data = more.get("data")
+    data = b"\x40" * (-(-width * samples * bits // 8) * height) if data is None else data
     tags = {
         256: ("I", [width]), 257: ("I", [height]), 258: ("H", [bits] * samples),
         259: ("H", [1]), 262: ("H", [photometric]), 273: ("I", [0]), 277: ("H", [samples]),
