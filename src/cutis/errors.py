@@ -12,7 +12,12 @@ class CutisError(ValueError):
 
     def __init__(self, message: str) -> None:
         """`message` as it is to be shown."""
-        super().__init__("".join(_shown(c) for c in " ".join(message.splitlines())))
+        super().__init__(printable(message))
+
+
+def printable(text: str) -> str:
+    """The text on one line, with codes (`\\x1b`) for what does not print."""
+    return "".join(_shown(c) for c in " ".join(text.splitlines()))
 
 
 def _shown(character: str) -> str:

@@ -3,7 +3,10 @@
 `tools/fuzz_textures.py` does the same to tens of thousands.
 """
 
+import os
+import signal
 import struct
+import threading
 import zlib
 
 import numpy as np
@@ -57,6 +60,24 @@ def read(reader, tmp_path):
         return outcome
 
     return read
+
+
+def test_a_reader_that_dies_or_hangs_is_a_finding(whole, monkeypatch):
+    reader, path = Reader(), whole["png"][2]
+    assert reader.read(path).good["texture"]
+    number = reader.pid
+    os.kill(number, signal.SIGSTOP)
+    death = threading.Timer(0.2, os.kill, (number, signal.SIGKILL))
+    death.start()
+    assert reader.read(path).findings == ["crash SIGKILL"]
+    death.join()
+    assert reader.read(path).findings == []
+    monkeypatch.setattr("hostile.reader.SECONDS", 0.3)
+    os.kill(reader.pid, signal.SIGSTOP)
+    assert reader.read(path).findings == ["hang 0 s"]
+    monkeypatch.undo()
+    assert reader.read(path).good["texture"]
+    reader.close()
 
 
 @given(data=st.data())

@@ -2,7 +2,7 @@
 
 import os
 
-from cutis.errors import CutisError
+from cutis.errors import CutisError, printable
 
 _QUOTED = 200  # characters of a file's own text in a message
 
@@ -14,6 +14,7 @@ def problem(path: str | os.PathLike[str], what: str) -> CutisError:
 
 def shorten(text: str) -> str:
     """Text from a file as far as it fits into a message."""
+    text = printable(text)
     return text if len(text) <= _QUOTED else f"{text[: _QUOTED - 1]}…"
 
 
