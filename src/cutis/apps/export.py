@@ -33,9 +33,11 @@ def export(
     colorspace: Annotated[
         str,
         typer.Option(
-            help="What textures are stored in: sRGB, linear, ACEScg, Display P3, Rec.2020."
+            help="What textures are stored in: sRGB, linear, ACEScg, Display P3, Rec.2020, or a name "
+            "of OpenColorIO."
         ),
     ] = "sRGB",
+    ocio: options.Ocio = None,
     maps: Annotated[
         Path | None,
         typer.Option(help="Maps of a capture, whose calibration and model the LUT takes over."),
@@ -62,7 +64,7 @@ def export(
             raise CutisError(f"{output} is for networks; edits are written as .cube or .clf")
         said = _networks(output, model or "aliaga2022")
     else:
-        said = _edit(output, edits, size, colorspace, maps, model, amount)
+        said = _edit(output, edits, size, colorspace, maps, model, amount, ocio)
     if not quiet:
         out.print(f"wrote {output}: {said}")
 
@@ -75,20 +77,22 @@ def _edit(
     maps: Path | None,
     model: str | None,
     amount: float,
+    ocio: str | None,
 ) -> str:
-    from cutis.colour.spaces import rgb_space
     from cutis.errors import CutisError
     from cutis.inverse import Calibration
-    from cutis.maps import export_lut, load_maps
+    from cutis.maps import MapsFile, export_lut
+    from cutis.textures import colour_space
 
     if not edits:
         raise CutisError(
             "nothing to export: give --preset or a parameter flag such as --melanin x2"
         )
-    space = rgb_space(colorspace)
-    skin = None if maps is None else load_maps(maps)
-    calibration = Calibration() if skin is None else skin.calibration
-    chosen = model or ("default" if skin is None else skin.model)
+    space = colour_space(colorspace, ocio)
+    calibration, chosen = Calibration(), model or "default"
+    if maps is not None:
+        with MapsFile(maps) as file:
+            calibration, chosen = file.calibration, model or file.model
     title = export_lut(
         output, edits, space, size, model=chosen, calibration=calibration, amount=amount
     )
