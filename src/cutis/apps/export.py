@@ -33,8 +33,8 @@ def export(
     colorspace: Annotated[
         str,
         typer.Option(
-            help="What textures are stored in: sRGB, linear, ACEScg, Display P3, Rec.2020, or a name "
-            "of OpenColorIO."
+            help="What textures are stored in: sRGB, linear, ACEScg, Display P3, Rec.2020, or a "
+            "name of OpenColorIO."
         ),
     ] = "sRGB",
     ocio: options.Ocio = None,
