@@ -2,8 +2,8 @@
 
     python benchmarks/scaling.py FACE [--side 2048] [--count 8]
 
-COUNT squares of FACE as half OpenEXR are estimated with `--jobs 1`, `--jobs 2`, and on a Dask scheduler
-of this machine with one worker and with two, each of one thread: two halves of two cores. Times are
+COUNT squares of FACE as half OpenEXR are estimated with `--jobs 1`, `--jobs 2`, and on a Dask
+scheduler here with one worker and with two, of one thread each: two halves of two cores. Times are
 of whole commands, start-up included.
 """
 
