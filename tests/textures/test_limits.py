@@ -1,7 +1,7 @@
 import pytest
 
 from cutis.errors import CutisError
-from cutis.textures.limits import LARGEST, check_claim, check_size
+from cutis.textures.limits import LARGEST, check_claim, check_size, check_tile
 
 
 @pytest.mark.parametrize("size", [(1, 1), (LARGEST, 1), (1, LARGEST), (LARGEST, LARGEST)])
@@ -23,3 +23,10 @@ def test_claims_are_weighed_by_the_length_of_the_file(tmp_path):
         check_claim(path, 9000, 9000, 3 * 9000**2)
     path.write_bytes(b"x")
     check_claim(path, 4000, 4000, 3 * 4000**2)  # little, whatever the file
+
+
+@pytest.mark.parametrize(("width", "height"), [(65535, 34464), (0, 16), (16, -16)])
+def test_tiles(width, height):
+    check_tile("a.tx", 8192, 8192, 3 * 8192**2)
+    with pytest.raises(CutisError, match=f"a.tx: claims tiles of {width} × {height} texels"):
+        check_tile("a.tx", width, height, 3 * width * height)

@@ -32,6 +32,7 @@ REFUSED = {
     "psd-lab": "another colour model",
     "tif-packbits-claims": "claims 16000 × 16000 texels",
     "tif-planar-claims": "claims 12000 × 12000 texels",
+    "tx-tile-claims": "claims tiles of 65535 × 34464 texels",
 }
 LITTLE = 400 << 20  # bytes, most of them the library's own
 

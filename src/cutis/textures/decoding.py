@@ -11,7 +11,7 @@ import OpenImageIO as oiio
 from numpy.typing import NDArray
 
 from cutis.textures.headers import image_format
-from cutis.textures.limits import check_claim, check_size
+from cutis.textures.limits import check_claim, check_size, check_tile
 from cutis.textures.problem import check_name, problem, shorten
 
 STORED_AS = {
@@ -196,21 +196,23 @@ def _check(path: Path, spec: oiio.ImageSpec) -> str:
 
 def _check_claim(path: Path, file_format: str, spec: oiio.ImageSpec, stored_as: str) -> None:
     """Refuse a header that claims more texels than its file can hold, before memory is taken."""
+    texel = spec.nchannels * oiio.TypeDesc(stored_as).size()
+    size = spec.image_pixels() * texel
+    across, down = spec.tile_width, spec.tile_height
+    if across:
+        check_tile(path, across, down, across * down * spec.tile_depth * texel)
+        size = -(-spec.width // across) * across * -(-spec.height // down) * down * texel
     packing = spec.get_string_attribute("compression")
     if file_format in ("tiff", "openexr") and packing not in _PACKING:
         return
     if spec.get_int_attribute("oiio:BitsPerSample", 8) < 8:
         return
-    check_claim(path, spec.width, spec.height, _size(spec, stored_as))
-
-
-def _size(spec: oiio.ImageSpec, stored_as: str) -> int:
-    return int(spec.image_pixels() * spec.nchannels * oiio.TypeDesc(stored_as).size())
+    check_claim(path, spec.width, spec.height, size)
 
 
 def check_memory(path: Path, spec: oiio.ImageSpec, stored_as: str) -> None:
     """Refuse to hold an image that free memory has no room for."""
-    need = _size(spec, stored_as)
+    need = spec.image_pixels() * spec.nchannels * oiio.TypeDesc(stored_as).size()
     free = available_memory()
     if free is not None and need > free:
         what = f"needs {need / 2**30:.1f} GiB of memory, {free / 2**30:.1f} GiB is free"

@@ -9,6 +9,7 @@ LARGEST = 32768  # texels along a side
 # Flat colours come to 200 (JPEG), 650 (LZW), 960 to 1030 (deflate) times the length.
 _ALWAYS = 64 << 20
 _MOST_PACKED = 2000
+_LARGEST_TILE = 256 << 20  # bytes: 9000 × 9000 texels of 8 bit RGB
 
 
 def check_size(path: str | os.PathLike[str], width: int, height: int) -> None:
@@ -26,3 +27,10 @@ def check_claim(path: str | os.PathLike[str], width: int, height: int, size: int
     if size > _ALWAYS and size > _MOST_PACKED * length:
         what = f"claims {width} × {height} texels, but is only {length} bytes long"
         raise problem(path, f"{what}; copy or export it again")
+
+
+def check_tile(path: str | os.PathLike[str], width: int, height: int, size: int) -> None:
+    """Refuse tiles that need more than 256 MiB each, whatever the image needs."""
+    if size > _LARGEST_TILE or min(width, height) < 1:
+        what = f"claims tiles of {width} × {height} texels"
+        raise problem(path, f"{what}; copy or export it again, with smaller tiles")
