@@ -25,7 +25,7 @@ LOW = (0.32, 0.49, 0.09)
 """Low ends of a, b, c: just outside the albedo space."""
 HIGH = (0.92, 0.93, 0.58)
 """High ends of a, b, c."""
-CELLS = (56, 40, 40)
+CELLS = (112, 80, 80)
 """Cells of the splines over a, b, c."""
 
 PRECISION = (3.0, 1.0, 1.0, 3.0, 1.0)
@@ -113,14 +113,20 @@ def _splines(values: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def save_baked(baked: Baked, file: Path) -> None:
-    """Writes a baked inverse as .npz, coefficients in steps of 1/65535 of their range."""
+    """Writes a baked inverse as .npz, coefficients in steps of 1/65535 of their range.
+
+    Each is stored as its difference to the one before along c, which packs to half the size.
+    """
     low, high = float(baked.coefficients.min()), float(baked.coefficients.max())
     steps = np.round((baked.coefficients - low) / (high - low) * 65535).astype(np.uint16)
-    np.savez_compressed(file, steps=steps, ends=np.array([low, high]))
+    changes = np.diff(steps, axis=2, prepend=np.uint16(0))  # modulo 65536, as the sum is
+    np.savez_compressed(file, changes=changes, ends=np.array([low, high]))
 
 
 def load_baked(file: Path) -> Baked:
     """Reads what `save_baked` wrote."""
     with np.load(file, allow_pickle=False) as stored:
         low, high = stored["ends"]
-        return Baked((low + stored["steps"] / 65535 * (high - low)).astype(np.float32))
+        steps = np.cumsum(stored["changes"], axis=2, dtype=np.uint16)
+        scale = np.float32((high - low) / 65535)
+        return Baked(np.float32(low) + steps.astype(np.float32) * scale)
