@@ -8,7 +8,7 @@ import pytest
 def applied(path, stored):
     """(n, 3) values through a LUT file, as OpenColorIO reads it."""
     buffer = oiio.ImageBuf(oiio.ImageSpec(len(stored), 1, 3, "float"))
-    buffer.set_pixels(oiio.ROI(), np.asarray(stored, np.float32)[None])
+    buffer.set_pixels(oiio.ROI(), np.ascontiguousarray(stored, np.float32)[None])
     result = oiio.ImageBufAlgo.ociofiletransform(buffer, str(path))
     assert not result.has_error, result.geterror()
     return result.get_pixels(oiio.FLOAT)[0]

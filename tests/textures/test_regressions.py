@@ -34,6 +34,16 @@ REFUSED = {
     "tif-planar-claims": "claims 12000 × 12000 texels",
     "tx-tile-claims": "claims tiles of 65535 × 34464 texels",
 }
+# What was no error at all: names that the library looks up, of another type than it thought.
+READ = {
+    "exr-chromaticities-are-a-number",
+    "exr-colour-tag-is-no-text",
+    "exr-photometric-is-text",
+    "exr-profile-is-a-count",
+    "exr-profile-is-a-number",
+    "exr-profile-is-text",
+    "png-colour-tag-is-no-text",
+}
 LITTLE = 400 << 20  # bytes, most of them the library's own
 
 
@@ -45,17 +55,17 @@ def reader():
 
 
 def test_every_file_is_listed():
-    assert [path.stem for path in FILES] == sorted(REFUSED)
+    assert [path.stem for path in FILES] == sorted({*REFUSED, *READ})
     assert max(path.stat().st_size for path in FILES) < 10_000
 
 
-@pytest.mark.parametrize("name", sorted(REFUSED))
+@pytest.mark.parametrize("name", sorted({*REFUSED, *READ}))
 def test_once_wrong(tmp_path, reader, name):
     content = next(path for path in FILES if path.stem == name).read_bytes()
     path = tmp_path / f"{name}.{name.split('-')[0]}"
     path.write_bytes(content)
     outcome = reader.read(path)
     assert outcome.findings == []
-    assert REFUSED[name] in outcome.results["texture"]
-    assert not outcome.good["texture"]
+    assert outcome.good["texture"] == (name in READ)
+    assert REFUSED.get(name, "") in outcome.results["texture"]
     assert outcome.memory < LITTLE

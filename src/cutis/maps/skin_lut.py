@@ -31,8 +31,10 @@ BRIGHTEST = 4.0
 """Largest linear value that the grid reaches."""
 SMALLEST = 9
 """Fewest nodes along a side."""
-AROUND = 1
-"""Cells over what is left of RGB, at each end of an axis."""
+AROUND = 2
+"""Cells beside skin at each end of an axis: one in which an edit fades, one for all the rest."""
+FADE = 0.25
+"""Width of the first of them, in natural logarithms."""
 STEPS = 1024
 """Cells of the curves that spread the grid."""
 TO_UVW = np.array([[0.0, 1.0, 0.0], [1.0, -1.0, 0.0], [0.0, -1.0, 1.0]])
@@ -83,18 +85,22 @@ def skin_lut(
     first, step, starts, ends = _axes(calibration or Calibration(), from_srgb)
     matrix = TO_UVW / (STEPS * step)[:, None]
     shift = -first / (STEPS * step)
-    margin = AROUND / (size - 1)
+    cell = 1 / (size - 1)
     spread, gather = np.empty((STEPS + 1, 3)), np.empty((size, 3))
     for axis in range(3):
-        at = np.array([0.0, starts[axis], ends[axis], STEPS]) / STEPS
-        to = np.array([0.0, margin, 1.0 - margin, 1.0])
+        fade = np.ceil(FADE / step[axis])
+        low, high = starts[axis], ends[axis]
+        at = np.array([0, low - fade, low, high, high + fade, STEPS]) / STEPS
+        to = np.array([0, cell, 2 * cell, 1 - 2 * cell, 1 - cell, 1])
         spread[:, axis] = np.interp(np.linspace(0, 1, STEPS + 1), at, to)
         gather[:, axis] = np.interp(np.linspace(0, 1, size), to, at)
     logs = (gather[_grid(size), np.arange(3)] - shift) @ np.linalg.inv(matrix).T
     colours = (np.exp(logs) - OFFSET) @ to_srgb
     captured = np.maximum(colours, 0).astype(np.float32)
     edited = edit(captured)
-    changed = (edited != captured).any(axis=1)
+    # dark colours are near skin whatever their hue; what lies beyond the fade must not feel them
+    beside = np.minimum(_grid(size), size - 1 - _grid(size)).min(axis=1) < AROUND
+    changed = (edited != captured).any(axis=1) & ~beside
     after = np.maximum(edited[changed] @ from_srgb, 0) + OFFSET
     before = np.maximum(captured[changed] @ from_srgb, 0) + OFFSET
     table = _grid(size) / (size - 1)

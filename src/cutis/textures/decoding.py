@@ -58,9 +58,8 @@ class Decoder:
             "".join(self.spec.channelnames).encode()  # what is not UTF-8 comes as lone surrogates
             self.stored_as = _check(path, self.spec)
             _check_claim(path, self.file_format, self.spec, self.stored_as)
-            self.step = self.spec.tile_height or int(
-                self.spec.get_int_attribute("oiio:RowsPerChunk", 1)
-            )
+            together = int(self.spec.get_int_attribute("oiio:RowsPerChunk", 1))
+            self.step = self.spec.tile_height or min(max(1, together), self.spec.height)
         except UnicodeError as cause:
             self.close()
             raise problem(path, "is damaged: a name in it is not text; export it again") from cause
@@ -151,8 +150,8 @@ def pending_error(source: oiio.ImageInput | oiio.ImageOutput | None = None) -> s
 
 def photometric(spec: oiio.ImageSpec) -> int | None:
     """TIFF's photometric interpretation (2 is RGB, 3 a palette, 5 CMYK); None for other formats."""
-    value = spec.getattribute("tiff:PhotometricInterpretation")
-    return None if value is None else int(value)
+    value = int(spec.get_int_attribute("tiff:PhotometricInterpretation", -1))
+    return None if value < 0 else value
 
 
 def is_palette(spec: oiio.ImageSpec) -> bool:

@@ -41,12 +41,12 @@ def write_clf(path: str | os.PathLike[str], operators: Sequence[str], title: str
 
     Raises CutisError for names that cannot be written.
     """
-    body = "\n".join(operators)
+    name, body = quoteattr(title or "edit"), "\n".join(operators)  # no empty names
     _write(
         path,
         ".clf",
         '<?xml version="1.0" encoding="UTF-8"?>\n'
-        f'<ProcessList id="cutis" compCLFversion="3.0" name={quoteattr(title)}>\n'
+        f'<ProcessList id="cutis" compCLFversion="3.0" name={name}>\n'
         f"{body}\n</ProcessList>\n",
     )
 

@@ -3,6 +3,7 @@
 import contextlib
 import difflib
 
+import numpy as np
 import OpenImageIO as oiio
 
 from cutis.colour.spaces import (
@@ -74,20 +75,20 @@ def declared_space(spec: oiio.ImageSpec, file_format: str, floating: bool) -> tu
     ValueError, saying what to do, where the file is in a space that cannot be told.
     """
     usual = LINEAR if floating else SRGB
-    profile = spec.getattribute("ICCProfile")
+    profile = _profile(spec)
     if profile is not None:
         try:
-            return icc_space(bytes(bytearray(profile))), "its ICC profile"
+            return icc_space(profile), "its ICC profile"
         except ValueError as error:
             return usual, f"assumed, its ICC profile cannot be used: it is {error}"
     numbers = spec.getattribute("chromaticities")
-    if numbers is not None and len(numbers) == 8:
+    if isinstance(numbers, tuple) and len(numbers) == 8:
         return _by_chromaticities(tuple(float(v) for v in numbers)), "its chromaticities"
     token = spec.get_string_attribute("colorInteropID")
-    if token and token not in ("unknown", "data"):
+    if token.isascii() and token not in ("", "unknown", "data"):
         with contextlib.suppress(CutisError):
             return colour_space(token, ""), "its colorInteropID"
-        return usual, f"assumed, its colorInteropID {token} is not known"
+        return usual, f"assumed, its colorInteropID {token[:40]!r} is not known"
     if file_format == "png":
         return _of_png(spec, usual)
     transfer = spec.get_string_attribute("dpx:Transfer").lower()
@@ -112,6 +113,12 @@ def _of_png(spec: oiio.ImageSpec, usual: Space) -> tuple[Space, str]:
     with contextlib.suppress(CutisError):
         return colour_space(token, ""), f"its {chunk}"
     return usual, f"assumed, its {chunk} says {token}, which is not known"
+
+
+def _profile(spec: oiio.ImageSpec) -> bytes | None:
+    """The bytes of an ICC profile; files may call other things so, of any type."""
+    profile = np.asarray(spec.getattribute("ICCProfile"))
+    return profile.tobytes() if profile.ndim == 1 and profile.dtype == np.uint8 else None
 
 
 def _by_chromaticities(numbers: tuple[float, ...]) -> RGBSpace:

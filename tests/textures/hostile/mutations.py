@@ -216,6 +216,65 @@ def _exr_attribute(content: bytes, other: bytes, random: Random) -> bytes:
     return bytes(out)
 
 
+# What the library looks up, and where others put it: any file may use the names for other things.
+_NAMES = (
+    b"ICCProfile chromaticities colorInteropID dpx:Transfer oiio:RowsPerChunk oiio:BitsPerSample "
+    b"oiio:UnassociatedAlpha oiio:ColorSpace tiff:PhotometricInterpretation tiff:ColorSpace "
+    b"jpeg:ColorSpace psd:ColorMode compression Orientation cutis:calibration cutis:edits "
+    b"cutis:source cutis:model name textureformat"
+).split()
+
+
+def _value(random: Random) -> tuple[bytes, bytes]:
+    """An OpenEXR type and a value of it."""
+    number = random.choice(_NUMBERS)
+    words = (b"3", b"sRGB", b"CMYK", b"[]", b"{}", b"[[1]]", b"\xff\xfe", b"\x1b[2J", b"nan")
+    text = random.choice((*words, b"{" * 5000, b"9" * 400))
+    return random.choice(
+        (
+            (b"int", struct.pack("<I", number)),
+            (b"float", struct.pack("<I", number)),
+            (b"double", struct.pack("<Q", number)),
+            (b"string", text),
+            (b"v2f", bytes(8)),
+            (b"m44f", bytes(64)),
+            (b"chromaticities", struct.pack("<8I", *(random.choice(_NUMBERS) for _ in range(8)))),
+            (b"floatvector", bytes(32)),
+            (b"stringvector", struct.pack("<I", len(text)) + text),
+        )
+    )
+
+
+def _exr_named(content: bytes, other: bytes, random: Random) -> bytes:
+    """One more attribute, of a name that means something and any type; chunks stay readable."""
+    kind, value = _value(random)
+    more = random.choice(_NAMES) + b"\0" + kind + b"\0" + struct.pack("<I", len(value)) + value
+    at = 8
+    while at < len(content) and content[at]:
+        name = content.find(b"\0", at)
+        end = content.find(b"\0", name + 1)
+        if min(name, end) < 0:
+            return content
+        at = end + 5 + struct.unpack("<I", content[end + 1 : end + 5].ljust(4, b"\0"))[0]
+    table = at + 1
+    if table + 8 > len(content):
+        return content
+    (first,) = struct.unpack("<Q", content[table : table + 8])
+    if content[5] & 16 or not table < first <= len(content) or (first - table) % 8:
+        return content[:8] + more + content[8:]
+    offsets = struct.unpack(f"<{(first - table) // 8}Q", content[table:first])
+    moved = struct.pack(f"<{len(offsets)}Q", *((o + len(more)) % 2**64 for o in offsets))
+    return content[:8] + more + content[8:table] + moved + content[first:]
+
+
+def _png_named(content: bytes, other: bytes, random: Random) -> bytes:
+    """One more text, under a name that means something."""
+    chunks = _png_chunks(content)
+    text = random.choice(_NAMES) + b"\0" + _value(random)[1]
+    chunks.insert(random.randrange(1, len(chunks)), (b"tEXt", text))
+    return _png_join(chunks)
+
+
 def _exr_version(content: bytes, other: bytes, random: Random) -> bytes:
     """The flags that say tiled, long names, deep, several parts."""
     out = bytearray(content)
@@ -272,10 +331,19 @@ _PSD = (
     *((at, ">I") for at in (14, 18, 26, 30, 34, 38, 42, 46, 50, 54, 58)),
 )
 _OWN: dict[bytes, dict[str, Callable[[bytes, bytes, Random], bytes]]] = {
-    b"\x89PNG": {"png field": _png_field, "png order": _png_order, "png inside": _png_inside},
+    b"\x89PNG": {
+        "png field": _png_field,
+        "png order": _png_order,
+        "png inside": _png_inside,
+        "png named": _png_named,
+    },
     b"II": {"tiff entry": _tiff_entry},
     b"MM": {"tiff entry": _tiff_entry},
-    b"v/1\x01": {"exr attribute": _exr_attribute, "exr flags": _exr_version},
+    b"v/1\x01": {
+        "exr attribute": _exr_attribute,
+        "exr flags": _exr_version,
+        "exr named": _exr_named,
+    },
     b"\xff\xd8": {"jpeg segment": _jpeg_segment},
     b"SDPX": {"dpx field": _fields(_DPX)},
     b"XPDS": {"dpx field": _fields(_DPX)},
