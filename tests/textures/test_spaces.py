@@ -126,7 +126,7 @@ def test_interop_names_do_not_depend_on_the_environment(config, monkeypatch):
     found = declared_space(spec_of(colorInteropID="lin_ap1_scene"), "openexr", True)
     assert found == (rgb_space("ACEScg"), "its colorInteropID")
     found = declared_space(spec_of(colorInteropID="lin_moon"), "openexr", True)
-    assert found == (LINEAR, "assumed, its colorInteropID lin_moon is not known")
+    assert found == (LINEAR, "assumed, its colorInteropID 'lin_moon' is not known")
     for nothing in ("unknown", "data"):
         space, origin = declared_space(spec_of(colorInteropID=nothing), "openexr", True)
         assert (space, origin) == (LINEAR, "assumed, the file says nothing")
