@@ -14,8 +14,7 @@ import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
-from types import TracebackType
-from typing import Any, Literal, Self
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +24,7 @@ from cutis.errors import CutisError
 from cutis.inverse.calibration import Calibration
 from cutis.maps.skin_maps import SkinMaps
 from cutis.optics import NAMES, PARAMETERS, Parameter
+from cutis.textures.closing import Closing
 
 PREFIX = "cutis:"
 PATHS = ("source", "source_ocio")
@@ -81,7 +81,7 @@ def maps_writer(
         yield write
 
 
-class MapsFile:
+class MapsFile(Closing):
     """An open file of skin maps: what its header says, and its maps some rows at a time.
 
     `edits` and `clamped` are those of `SkinMaps`, `changed` names the maps whose values before
@@ -128,14 +128,6 @@ class MapsFile:
         config = self.provenance.get("source_ocio")
         if config and "://" not in config:
             self.provenance["source_ocio"] = os.path.join(self.path.resolve().parent, config)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None
-    ) -> None:
-        self.close()
 
     def close(self) -> None:
         """Lets go of the file."""

@@ -7,13 +7,13 @@ import contextlib
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from types import TracebackType
-from typing import Literal, Self
+from typing import Literal
 
 import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import ArrayLike, NDArray
 
+from cutis.textures.closing import Closing
 from cutis.textures.decoding import Decoder
 from cutis.textures.encoding import encoder
 from cutis.textures.problem import problem
@@ -101,7 +101,7 @@ def channel_writer(
         yield write
 
 
-class ChannelFile:
+class ChannelFile(Closing):
     """An open OpenEXR file of named channels (its first part), read some rows at a time.
 
     `names` are its channels, `metadata` what its header says, as text or numbers; other metadata is
@@ -119,14 +119,6 @@ class ChannelFile:
         self.shape = self._source.shape
         self.names = tuple(self._source.spec.channelnames)
         self.metadata = _metadata(self._source.spec)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None
-    ) -> None:
-        self.close()
 
     def close(self) -> None:
         """Lets go of the file."""

@@ -3,13 +3,12 @@
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
-from typing import Self
 
 import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
 
+from cutis.textures.closing import Closing
 from cutis.textures.headers import image_format
 from cutis.textures.limits import check_claim, check_size, check_tile
 from cutis.textures.problem import check_name, problem, shorten
@@ -31,7 +30,7 @@ _PACKING = {
 }
 
 
-class Decoder:
+class Decoder(Closing):
     """First image of an open file; `rows` gives stored values (h, W, C) of rows from top to bottom.
 
     Values are uint8, uint16, float16 or float32. `step` is the number of rows that are stored
@@ -66,14 +65,6 @@ class Decoder:
         except BaseException:
             self.close()
             raise
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None
-    ) -> None:
-        self.close()
 
     def close(self) -> None:
         """Lets go of the file; a second call does nothing."""

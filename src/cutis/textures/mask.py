@@ -2,19 +2,18 @@
 
 import os
 from pathlib import Path
-from types import TracebackType
-from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cutis.errors import CutisError
+from cutis.textures.closing import Closing
 from cutis.textures.decoding import Decoder, check_finite
 from cutis.textures.problem import problem
 from cutis.textures.texture import bands, colour_channels, to_unit
 
 
-class MaskFile:
+class MaskFile(Closing):
     """An open mask, read some rows at a time; see `read_mask`, also for errors."""
 
     BLACK = 0.02
@@ -43,14 +42,6 @@ class MaskFile:
             return colour_channels(names)[0]
         except ValueError as error:
             raise problem(path, f"as a mask: {error}, or a channel called mask") from error
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None
-    ) -> None:
-        self.close()
 
     def close(self) -> None:
         """Lets go of the file."""

@@ -3,13 +3,12 @@
 import os
 from collections.abc import Iterator
 from pathlib import Path
-from types import TracebackType
-from typing import Self
 
 import numpy as np
 import OpenImageIO as oiio
 
 from cutis.errors import CutisError
+from cutis.textures.closing import Closing
 from cutis.textures.decoding import Decoder, check_finite, check_memory, is_palette, photometric
 from cutis.textures.headers import stored_otherwise
 from cutis.textures.problem import problem
@@ -17,7 +16,7 @@ from cutis.textures.spaces import colour_space, declared_space
 from cutis.textures.texture import Texture, bands, colour_channels
 
 
-class TextureFile:
+class TextureFile(Closing):
     """An open texture: what its header says, and its rows on demand.
 
     See `read_texture` for what is read and how, and for errors, which may show only at the rows
@@ -58,14 +57,6 @@ class TextureFile:
             )
         else:
             self.space, self.origin = colour_space(colorspace, ocio), "given"
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None
-    ) -> None:
-        self.close()
 
     def close(self) -> None:
         """Lets go of the file."""
