@@ -1,0 +1,1 @@
+"""Pictures of skin by path tracing."""
