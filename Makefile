@@ -12,12 +12,15 @@ INSTALL := $(BIN)/python -m pip --disable-pip-version-check install --quiet -c c
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help setup demo test lint types docs format clean
+.PHONY: help setup blender demo test lint types docs format clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | expand -t 10
 
 setup: $(FULL) ## make .venv with everything that tests, docs and training need
+
+blender: $(CORE) ## install Blender as a Python module, for renders, into .venv/cutis-blender
+	$(BIN)/python -m cutis.render.blender_install
 
 demo: $(CORE) ## run the demonstration on the example capture, into demo/
 	$(BIN)/cutis demo -o demo
