@@ -767,4 +767,4 @@ if __name__ == "__main__":
     given = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else sys.argv[1:]
     status = main(given[0])
     sys.stdout.flush()
-    sys.exit(status)
+    os._exit(status)  # all is written; taking itself apart, the module of 4.2 crashes
