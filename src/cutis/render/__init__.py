@@ -1,0 +1,1 @@
+"""Pictures: subsurface inversion, materials, and scenes that Cycles renders."""
