@@ -166,26 +166,34 @@ class Graph:
                 raise AssertionError(f"{other} is new in this graph")
 
 
-@pytest.mark.parametrize("mix", [0.0, 0.15, 0.5, 0.9])
-@pytest.mark.parametrize("roughness", [(0.3, 0.5), (0.2, 0.35), (0.45, 0.6)])
+LOBES = [(0.3, 0.52), (0.2, 0.35), (0.45, 0.6), (0.52, 0.3)]
+
+
+@pytest.mark.parametrize("mix", [0.0, 0.15, 0.5, 0.85, 1.0])
+@pytest.mark.parametrize("roughness", LOBES)
 def test_open_pbr_comes_to_the_two_lobes(library, mix, roughness):
     """By the model's own graph: what it does to the base below a coat is undone."""
     gloss = Gloss(roughness, mix, 1.4)
-    graph = Graph(
-        library, "NG_open_pbr_surface_surfaceshader", numbers(open_pbr(skin(gloss=gloss)))
-    )
-    coat = graph("coat_ior_to_F0")
-    base = graph("scaled_specular_F0_clamped")
+    inputs = numbers(open_pbr(skin(gloss=gloss)))
+    graph = Graph(library, "NG_open_pbr_surface_surfaceshader", inputs)
     reflected = (0.4 / 2.4) ** 2
-    assert coat == pytest.approx(reflected)
-    assert base == pytest.approx((1 - mix) * reflected)
-    assert graph("effective_specular_roughness") == pytest.approx(roughness[1], abs=1e-6)
+    assert graph("coat_ior_to_F0") == pytest.approx(reflected)
+    lobes = {
+        inputs["coat_roughness"]: inputs["coat_weight"] * reflected,
+        round(graph("effective_specular_roughness"), 6): graph("scaled_specular_F0_clamped"),
+    }
+    expected = {roughness[0]: mix * reflected, roughness[1]: (1 - mix) * reflected}
+    assert lobes == pytest.approx(expected)
+
+
+def test_base_under_a_coat_too_rough_is_as_smooth_as_can_be():
+    assert numbers(open_pbr(skin(gloss=Gloss((0.2, 1.0), 0.5))))["specular_roughness"] == 0
 
 
 @pytest.mark.parametrize("mix", [0.0, 0.3, 1.0])
 def test_reflected_light_adds_up_to_one_interface(mix):
     """At normal incidence coat over base is within 1 % of a single interface, mixed or not."""
-    inputs = numbers(standard_surface(skin(gloss=Gloss((0.3, 0.5), mix, 1.4))))
+    inputs = numbers(standard_surface(skin(gloss=Gloss((0.3, 0.52), mix, 1.4))))
     reflected = (0.4 / 2.4) ** 2
     coat = inputs["coat"] * reflected
     total = coat + (1 - coat) * inputs["specular"] * reflected

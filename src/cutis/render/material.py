@@ -20,8 +20,8 @@ class Gloss:
     to that of the second; GGX α is roughness². `refractive_index` is that of both.
     """
 
-    roughness: tuple[float, float] = (0.3, 0.5)
-    mix: float = 0.3
+    roughness: tuple[float, float] = (0.3, 0.52)
+    mix: float = 0.85
     refractive_index: float = 1.4
 
     def __post_init__(self) -> None:
@@ -31,6 +31,14 @@ class Gloss:
             raise CutisError(f"the mix of two lobes must lie in 0 to 1, not {self.mix:g}")
         if not 1 <= self.refractive_index < 3:
             raise CutisError(f"a refractive index of {self.refractive_index:g} is not that of skin")
+
+    @property
+    def lobes(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """(roughness, share) of the stronger lobe, then of the other; rougher first if equal."""
+        first, second = self.roughness
+        ordered = sorted([(self.mix, first), (1 - self.mix, second)], reverse=True)
+        (share, roughness), (other_share, other) = ordered
+        return (roughness, share), (other, other_share)
 
 
 @dataclass(frozen=True)

@@ -4,9 +4,9 @@ The document holds two materials that mean the same: an OpenPBR surface and an A
 Surface. In both, the subsurface colour is the diffuse albedo: the renderer inverts it to the
 single-scattering albedo of its medium. Radii are in mm and scaled to units of the scene.
 
-Two specular lobes of one interface are said as base and coat, since neither model has two: the coat
-is the first lobe and as strong as its share, the base the second. Standard Surface takes both as
-they are. OpenPBR computes the base below the coat as rougher and less refracting, as if the coat
+Two specular lobes of one interface are said as base and coat, since neither model has two: the base
+is the stronger lobe, the coat the other, each as strong as its share. Standard Surface takes both
+as they are. OpenPBR computes the base below the coat as rougher and less refracting, as if the coat
 were a layer of its own; its inputs are set so that what comes out are the two lobes asked for.
 
 Written with the standard library: the document is 60 lines of XML, the MaterialX package 28 MB.
@@ -81,8 +81,8 @@ def open_pbr(material: Material) -> Iterator[tuple[str, Value | str]]:
         yield "subsurface_radius", material.scale
         yield "subsurface_radius_scale", "radius"
     yield "subsurface_scatter_anisotropy", material.anisotropy
-    yield "coat_weight", gloss.mix
-    yield "coat_roughness", gloss.roughness[0]
+    yield "coat_weight", gloss.lobes[1][1]
+    yield "coat_roughness", gloss.lobes[1][0]
     yield "coat_ior", gloss.refractive_index
     yield "coat_darkening", 0.0  # the albedo is what is seen already
 
@@ -92,40 +92,40 @@ def standard_surface(material: Material) -> Iterator[tuple[str, Value | str]]:
     gloss = material.gloss
     yield "base", 1.0
     yield "base_color", "albedo"
-    yield "specular", 1 - gloss.mix
-    yield "specular_roughness", gloss.roughness[1]
+    yield "specular", gloss.lobes[0][1]
+    yield "specular_roughness", gloss.lobes[0][0]
     yield "specular_IOR", gloss.refractive_index
     yield "subsurface", 1.0
     yield "subsurface_color", "albedo"
     yield "subsurface_radius", material.radius if material.radius_texture is None else "radius"
     yield "subsurface_scale", material.scale
     yield "subsurface_anisotropy", material.anisotropy
-    yield "coat", gloss.mix
-    yield "coat_roughness", gloss.roughness[0]
+    yield "coat", gloss.lobes[1][1]
+    yield "coat_roughness", gloss.lobes[1][0]
     yield "coat_IOR", gloss.refractive_index
 
 
 def _below_coat(gloss: Gloss) -> tuple[float, float]:
-    """OpenPBR's specular weight and roughness whose base, under the coat, is the second lobe.
+    """OpenPBR's specular weight and roughness whose base, under the coat, is the stronger lobe.
 
     The base has index η = (1−w) n + w·1 below a coat of weight w and the same index n, and its
     reflectivity at normal incidence F₀ is multiplied by the specular weight; its roughness is
-    (1−w) r + w min(1, 2 r_coat⁴ + r⁴)^¼. Solved for (1−w) F₀(n) and the second roughness. Where the
-    coat alone makes it rougher than that, r is 0.
+    (1−w) r + w min(1, 2 r_coat⁴ + r⁴)^¼. Solved for (1−w) F₀(n) and the roughness asked for. Where
+    the coat alone makes it rougher than that, r is 0.
     """
-    coat, index = gloss.mix, gloss.refractive_index
-    below = (1 - coat) * index + coat
-    wanted = (1 - coat) * _normal_reflectance(index)
-    weight = wanted / _normal_reflectance(below) if below > 1 else 0.0
+    (wanted, share), (coat_roughness, coat) = gloss.lobes
+    index = gloss.refractive_index
+    reflected = _normal_reflectance((1 - coat) * index + coat)
+    weight = share * _normal_reflectance(index) / reflected if reflected > 0 else 0.0
 
     def roughened(roughness: float) -> float:
-        under = min(1.0, 2 * gloss.roughness[0] ** 4 + roughness**4) ** 0.25
+        under = min(1.0, 2 * coat_roughness**4 + roughness**4) ** 0.25
         return (1 - coat) * roughness + coat * under
 
     low, high = 0.0, 1.0
     while high - low > 1e-9:  # roughened() grows with roughness
         middle = (low + high) / 2
-        low, high = (middle, high) if roughened(middle) < gloss.roughness[1] else (low, middle)
+        low, high = (middle, high) if roughened(middle) < wanted else (low, middle)
     return weight, low
 
 
