@@ -171,9 +171,10 @@ LOBES = [(0.3, 0.52), (0.2, 0.35), (0.45, 0.6), (0.52, 0.3)]
 
 @pytest.mark.parametrize("mix", [0.0, 0.15, 0.5, 0.85, 1.0])
 @pytest.mark.parametrize("roughness", LOBES)
-def test_open_pbr_comes_to_the_two_lobes(library, mix, roughness):
+@pytest.mark.parametrize("strength", [1.0, 0.6])
+def test_open_pbr_comes_to_the_two_lobes(library, mix, roughness, strength):
     """By the model's own graph: what it does to the base below a coat is undone."""
-    gloss = Gloss(roughness, mix, 1.4)
+    gloss = Gloss(roughness, mix, 1.4, strength)
     inputs = numbers(open_pbr(skin(gloss=gloss)))
     graph = Graph(library, "NG_open_pbr_surface_surfaceshader", inputs)
     reflected = (0.4 / 2.4) ** 2
@@ -182,12 +183,13 @@ def test_open_pbr_comes_to_the_two_lobes(library, mix, roughness):
         inputs["coat_roughness"]: inputs["coat_weight"] * reflected,
         round(graph("effective_specular_roughness"), 6): graph("scaled_specular_F0_clamped"),
     }
-    expected = {roughness[0]: mix * reflected, roughness[1]: (1 - mix) * reflected}
+    shares = {roughness[0]: mix, roughness[1]: 1 - mix}
+    expected = {r: share * strength * reflected for r, share in shares.items()}
     assert lobes == pytest.approx(expected)
 
 
 def test_base_under_a_coat_too_rough_is_as_smooth_as_can_be():
-    assert numbers(open_pbr(skin(gloss=Gloss((0.2, 1.0), 0.5))))["specular_roughness"] == 0
+    assert numbers(open_pbr(skin(gloss=Gloss((0.1, 1.0), 0.6))))["specular_roughness"] == 0
 
 
 @pytest.mark.parametrize("mix", [0.0, 0.3, 1.0])

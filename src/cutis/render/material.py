@@ -17,18 +17,21 @@ class Gloss:
     """Mirror reflection at the surface: two GGX lobes of one dielectric interface.
 
     A share `mix` of the light that is reflected goes to the lobe of the first `roughness`, the rest
-    to that of the second; GGX α is roughness². `refractive_index` is that of both.
+    to that of the second; GGX α is roughness². `refractive_index` is that of both; `strength`, 0 to
+    1, multiplies what they reflect.
     """
 
-    roughness: tuple[float, float] = (0.3, 0.52)
+    roughness: tuple[float, float] = (0.375, 0.65)
     mix: float = 0.85
     refractive_index: float = 1.4
+    strength: float = 1.0
 
     def __post_init__(self) -> None:
         if not all(0 <= r <= 1 for r in self.roughness):
             raise CutisError(f"roughness must lie in 0 to 1, not {self.roughness}")
-        if not 0 <= self.mix <= 1:
-            raise CutisError(f"the mix of two lobes must lie in 0 to 1, not {self.mix:g}")
+        for name, value in (("mix of two lobes", self.mix), ("strength", self.strength)):
+            if not 0 <= value <= 1:
+                raise CutisError(f"the {name} must lie in 0 to 1, not {value:g}")
         if not 1 <= self.refractive_index < 3:
             raise CutisError(f"a refractive index of {self.refractive_index:g} is not that of skin")
 
@@ -111,6 +114,7 @@ class Material:
                 "roughness": list(self.gloss.roughness),
                 "mix": self.gloss.mix,
                 "refractive_index": self.gloss.refractive_index,
+                "strength": self.gloss.strength,
             },
             **self.notes,
             "credits": list(self.credits),

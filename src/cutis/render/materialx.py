@@ -81,7 +81,7 @@ def open_pbr(material: Material) -> Iterator[tuple[str, Value | str]]:
         yield "subsurface_radius", material.scale
         yield "subsurface_radius_scale", "radius"
     yield "subsurface_scatter_anisotropy", material.anisotropy
-    yield "coat_weight", gloss.lobes[1][1]
+    yield "coat_weight", gloss.lobes[1][1] * gloss.strength
     yield "coat_roughness", gloss.lobes[1][0]
     yield "coat_ior", gloss.refractive_index
     yield "coat_darkening", 0.0  # the albedo is what is seen already
@@ -92,7 +92,7 @@ def standard_surface(material: Material) -> Iterator[tuple[str, Value | str]]:
     gloss = material.gloss
     yield "base", 1.0
     yield "base_color", "albedo"
-    yield "specular", gloss.lobes[0][1]
+    yield "specular", gloss.lobes[0][1] * gloss.strength
     yield "specular_roughness", gloss.lobes[0][0]
     yield "specular_IOR", gloss.refractive_index
     yield "subsurface", 1.0
@@ -100,7 +100,7 @@ def standard_surface(material: Material) -> Iterator[tuple[str, Value | str]]:
     yield "subsurface_radius", material.radius if material.radius_texture is None else "radius"
     yield "subsurface_scale", material.scale
     yield "subsurface_anisotropy", material.anisotropy
-    yield "coat", gloss.lobes[1][1]
+    yield "coat", gloss.lobes[1][1] * gloss.strength
     yield "coat_roughness", gloss.lobes[1][0]
     yield "coat_IOR", gloss.refractive_index
 
@@ -113,10 +113,12 @@ def _below_coat(gloss: Gloss) -> tuple[float, float]:
     (1−w) r + w min(1, 2 r_coat⁴ + r⁴)^¼. Solved for (1−w) F₀(n) and the roughness asked for. Where
     the coat alone makes it rougher than that, r is 0.
     """
-    (wanted, share), (coat_roughness, coat) = gloss.lobes
-    index = gloss.refractive_index
+    (wanted, share), (coat_roughness, other) = gloss.lobes
+    index, coat = gloss.refractive_index, other * gloss.strength
     reflected = _normal_reflectance((1 - coat) * index + coat)
-    weight = share * _normal_reflectance(index) / reflected if reflected > 0 else 0.0
+    weight = (
+        share * gloss.strength * _normal_reflectance(index) / reflected if reflected > 0 else 0.0
+    )
 
     def roughened(roughness: float) -> float:
         under = min(1.0, 2 * coat_roughness**4 + roughness**4) ** 0.25
