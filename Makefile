@@ -51,5 +51,5 @@ $(CORE): pyproject.toml constraints.txt
 
 $(FULL): pyproject.toml constraints.txt
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(INSTALL) -e '.[cluster,dev,docs,onnx,train]'
+	$(INSTALL) -e '.[cluster,dev,docs,materialx,onnx,train]'
 	@touch $(CORE) $@
