@@ -67,7 +67,7 @@ def import_mesh(path):
     """Meshes of a file in one space: a list of bpy meshes with transformations and modifiers in."""
     before = set(bpy.data.objects)
     kind = os.path.splitext(path)[1].lower()
-    wanted = {
+    wanted: dict = {
         ".obj": (bpy.ops.wm.obj_import, {"use_split_objects": False, "use_split_groups": False}),
         ".gltf": (bpy.ops.import_scene.gltf, {"import_shading": "NORMALS"}),
         ".glb": (bpy.ops.import_scene.gltf, {"import_shading": "NORMALS"}),
@@ -415,7 +415,8 @@ def skin_material(picture, textures):
     return material
 
 
-EYE = (  # half angle in degrees at the middle of a ball of 24 mm, colour: pupil, iris, limbus, sclera
+# Half angle in degrees at the middle of a ball of 24 mm, and colour: pupil, iris, limbus, sclera.
+EYE = (
     (0.0, (0.005, 0.005, 0.005)),
     (9.0, (0.005, 0.005, 0.005)),
     (10.0, (0.10, 0.055, 0.03)),
@@ -689,7 +690,9 @@ class Studio:
         self.scene.collection.objects.link(self.camera)
         self.scene.camera = self.camera
         self.textures = Textures()
-        self.subject = self.key = self.room = self.device = None
+        self.subject: Subject | None = None
+        self.room: Room | None = None
+        self.key = self.device = None
 
     def render(self, picture):
         paths = ("base_colour", "radius", "normal", "roughness")
@@ -698,11 +701,10 @@ class Studio:
         if self.device != picture["device"]:
             self.device = picture["device"]
             tell(event="device", name=choose_device(self.device))
-        self.look_at(picture)
+        subject = self.look_at(picture)
         material = skin_material(picture, self.textures)
-        for thing in self.subject.objects:
+        for thing in subject.objects:
             thing.data.materials[0] = material
-        subject = self.subject
         subject.turntable.rotation_euler = (
             math.radians(-picture["tilt"]),
             0.0,
@@ -719,21 +721,22 @@ class Studio:
             raise Problem("Cycles wrote no picture")
 
     def look_at(self, picture):
-        """Loads the mesh unless it is there."""
+        """The subject; its mesh is loaded unless it is there."""
         aspect = 1.0
         if picture["mesh"] == "patch" and isinstance(picture["base_colour"], str):
             width, height = self.textures.get(picture["base_colour"], LINEAR).size
             aspect = width / height
         names = ("mesh", "millimetres_per_unit", "subdivision")
         key = (aspect, *(picture[name] for name in names))
-        if key == self.key:
-            return
+        if self.subject and key == self.key:
+            return self.subject
         if self.subject:
             self.subject.remove()
         self.subject, self.key = Subject(picture, aspect), key
         for thing in self.subject.eye_objects:
             size = np.ptp(positions(thing.data), axis=0)
             thing.data.materials[0] = eye_material(size.min() > 0.7 * size.max())
+        return self.subject
 
 
 def main(path):
