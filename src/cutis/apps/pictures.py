@@ -109,8 +109,9 @@ def render_pictures(order: Order, blender: "Blender", progress: Progress) -> Ren
         result.device = render(todo, blender, progress, keep)
     if sequence:
         result.animation = stem.with_suffix(".webp")
-        progress(1, 1, "moving preview")
-        write_animation(names, result.animation)
+        if result.written or not result.animation.is_file():
+            progress(1, 1, "moving preview")
+            write_animation(names, result.animation)
     return result
 
 
