@@ -49,7 +49,7 @@ SKIN_IOR = 1.4
 
 # Brings a white card that faces the camera to a luminance of WHITE_CARD (tests measure it).
 WHITE_CARD = 0.8
-GAIN = {"studio": 1.0, "sun": 1.0, "interior": 1.0, "furnace": 1.0}
+GAIN = {"studio": 1.344, "sun": 0.848, "interior": 1.834, "furnace": 1.0}
 
 
 class Problem(Exception):
@@ -541,7 +541,7 @@ class Room:
         self.sky([(0.0, (0.10, 0.10, 0.10))])
         self.lamp("AREA", (-40, 35), 4.0, 2.6, 7.0)
         self.lamp("AREA", (50, 10), 4.5, 3.5, 0.9)
-        self.lamp("AREA", (150, 35), 4.0, 1.6, 6.0)
+        self.lamp("AREA", (140, 25), 4.0, 1.8, 3.5)
         if backdrop:
             self.wall(5.0, (0.18, 0.18, 0.18))
 
@@ -552,20 +552,20 @@ class Room:
             [
                 (-1.0, (0.20, 0.17, 0.13)),
                 (-0.02, (0.24, 0.21, 0.17)),
-                (0.02, (0.55, 0.66, 0.80)),
-                (0.25, (0.36, 0.50, 0.76)),
-                (1.0, (0.14, 0.25, 0.55)),
+                (0.02, (0.52, 0.68, 0.80)),
+                (0.25, (0.33, 0.53, 0.74)),
+                (1.0, (0.13, 0.28, 0.50)),
             ]
         )
 
     def interior(self, backdrop):
         """A room in the evening: a lamp, a window's last light from the other side, warm walls."""
-        self.sky([(-1.0, (0.045, 0.028, 0.016)), (1.0, (0.11, 0.075, 0.045))])
-        self.lamp("AREA", (38, 25), 3.2, 0.8, 26.0, kelvin=3200)
-        self.lamp("AREA", (-70, 10), 4.5, 3.0, 0.9, kelvin=6500)
-        self.lamp("AREA", (-150, 40), 4.0, 0.7, 16.0, kelvin=2900)
+        self.sky([(-1.0, (0.07, 0.055, 0.04)), (1.0, (0.15, 0.125, 0.10))])
+        self.lamp("AREA", (42, 28), 3.2, 0.9, 24.0, kelvin=4200)
+        self.lamp("AREA", (-70, 10), 4.5, 3.0, 1.1, kelvin=7500)
+        self.lamp("AREA", (-145, 30), 4.0, 1.0, 8.0, kelvin=3800)
         if backdrop:
-            self.wall(6.0, (0.16, 0.10, 0.065))
+            self.wall(6.0, (0.17, 0.13, 0.095))
 
     def remove(self):
         for thing in self.made:
