@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from pages import rewrite
 from PIL import Image, ImageDraw, ImageFont
 from rich.progress import Progress
 
@@ -23,7 +24,6 @@ from cutis.render.frames import Frame
 from cutis.render.heads import Head, head
 from cutis.render.scene import Scene
 from cutis.textures import read_texture
-from pages import rewrite
 
 ROOT = Path(__file__).parents[1]
 WORK, PAGE = ROOT / "build" / "renders", ROOT / "docs" / "renders"
