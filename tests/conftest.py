@@ -51,6 +51,18 @@ def shared_data() -> Path:
 
 
 @pytest.fixture(scope="session")
+def blender():
+    """A Blender that works; the test is skipped where there is none."""
+    from cutis.errors import CutisError
+    from cutis.render.blender import find_blender
+
+    try:
+        return find_blender()
+    except CutisError as error:
+        pytest.skip(str(error))
+
+
+@pytest.fixture(scope="session")
 def capture1() -> tuple[Path, Path]:
     """The example capture: (8-bit sRGB albedo, mask)."""
     folder = ROOT / "examples"
