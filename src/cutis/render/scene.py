@@ -44,9 +44,10 @@ class Scene:
         one shows in its middle, from the lower left (0, 0) to the upper right (1, 1).
     Light and picture
         light: one of `LIGHTS`, set so that a white card facing the camera has luminance 0.8;
-        exposure: stops; backdrop: a wall behind the subject; transparent: no background and an
-        alpha channel; width, height: pixels; samples: a pixel; seed; denoise: by Open Image
-        Denoise with albedo and normals; device: `auto` takes a GPU where Cycles finds one.
+        exposure: stops; backdrop: a wall behind the subject; transparent: no background (nor
+        backdrop) and an alpha channel; width, height: pixels; samples: a pixel; seed; denoise: by
+        Open Image Denoise with albedo and normals; device: `auto` takes a GPU where Cycles finds
+        one.
 
     Raises CutisError for values out of range and files that do not exist.
     """

@@ -67,6 +67,10 @@ def import_mesh(path):
     """Meshes of a file in one space: a list of bpy meshes with transformations and modifiers in."""
     before = set(bpy.data.objects)
     kind = os.path.splitext(path)[1].lower()
+    if kind == ".obj":  # Blender reads 0 there
+        with open(path, "rb") as file:
+            if any(re.match(rb"v\s.*(nan|inf)", line.lower()) for line in file):
+                raise Problem(f"the mesh {path} has vertices that are not numbers; export it again")
     wanted: dict = {
         ".obj": (bpy.ops.wm.obj_import, {"use_split_objects": False, "use_split_groups": False}),
         ".gltf": (bpy.ops.import_scene.gltf, {"import_shading": "NORMALS"}),
@@ -382,7 +386,7 @@ def skin_material(picture, textures):
         "IOR": SKIN_IOR,
         "Specular IOR Level": 0.5 * picture["specular"],
     }
-    settings = {}
+    settings = {"distribution": "GGX"}
     if picture["method"] != "diffuse":
         inputs |= {
             "Subsurface Weight": 1.0,
@@ -713,7 +717,8 @@ class Studio:
         )
         if self.room:
             self.room.remove()
-        self.room = Room(picture["light"], subject.radius, picture["backdrop"])
+        backdrop = picture["backdrop"] and not picture["transparent"]
+        self.room = Room(picture["light"], subject.radius, backdrop)
         frame(picture, subject, self.camera)
         return material
 
