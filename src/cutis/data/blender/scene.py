@@ -753,7 +753,8 @@ class Studio:
             material.asset_data.tags.new(tag)
         scale_by_value(material.node_tree, picture["scale"])
         lay_out(material.node_tree)
-        self.scene.render.filepath = "//"
+        for path in (1000 * "/", "//"):  # the old path would stay in the file behind the new one
+            self.scene.render.filepath = path
         for image in self.textures.images.values():
             image.name = os.path.basename(image.filepath)
             image.filepath = "//" + os.path.basename(image.filepath)
