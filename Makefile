@@ -23,9 +23,6 @@ setup: $(FULL) ## make .venv with everything that tests, docs, training and rend
 
 blender: $(BLENDER) ## install Blender as a module, in .venv/cutis-blender
 
-blender: $(CORE) ## install Blender as a Python module, for renders, into .venv/cutis-blender
-	$(BIN)/python -m cutis.render.blender_install
-
 demo: $(CORE) ## run the demonstration on the example capture, into demo/
 	$(BIN)/cutis demo -o demo
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from cutis.errors import CutisError
-from cutis.render.blender import find_blender, quiet_environment
+from cutis.render.blender import quiet_environment
 from cutis.render.blender_material import preview_scene, write_blender
 from cutis.render.cycles_process import render
 from cutis.render.material import Gloss, Material
@@ -60,14 +60,6 @@ print("TOLD " + json.dumps({
     "others": len(bpy.data.objects),
 }))
 """
-
-
-@pytest.fixture(scope="module")
-def blender():
-    try:
-        return find_blender()
-    except CutisError as error:
-        pytest.skip(str(error))
 
 
 def ask(blender, folder, script, *arguments):

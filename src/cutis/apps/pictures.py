@@ -9,11 +9,14 @@ from typing import TYPE_CHECKING, Any
 from cutis.errors import CutisError
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from cutis.maps import Edit
     from cutis.render.blender import Blender
     from cutis.render.frames import Frame
     from cutis.render.scene import Scene
-    from cutis.render.skin import Skin
+    from cutis.render.skin import Rows, Skin
 
 Progress = Callable[[int, int, str], None]
 """Takes what is done, all, and what is being done."""
@@ -133,11 +136,28 @@ class _Feeds:
 
     def _write(self, edits: "tuple[Edit, ...]") -> tuple[Path, Any]:
         from cutis.render.feed import write_feed
+        from cutis.render.medium import mean_free_path, of_maps
 
         number, order = len(self._written), self._order
         colour = self._folder / f"colour{number}.exr"
         write_feed(self._skin, colour, lambda rows: rows.albedo, edits, order.amount)
-        return colour, order.scene.radius
+        g = order.scene.anisotropy
+        if order.radius == "tissue":
+            red, green, blue = mean_free_path(g)
+            return colour, (float(red), float(green), float(blue))
+        if self._skin.maps is None:
+            raise CutisError(
+                f"{order.skin.name} is a texture; --radius maps needs its maps (NAME.skin.exr), "
+                "which cutis estimate makes"
+            )
+        lengths = self._folder / f"radius{number}.exr"
+
+        def of_rows(rows: "Rows") -> "NDArray[np.float32]":
+            assert rows.maps is not None
+            return of_maps(rows.maps, g)
+
+        write_feed(self._skin, lengths, of_rows, edits, order.amount)
+        return colour, lengths
 
 
 def _recipe(order: Order, skin: "Skin") -> dict[str, Any]:

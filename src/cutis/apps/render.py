@@ -54,6 +54,9 @@ def render(
             help="Mean free paths: tissue (one for all texels) or maps (from the chromophores)."
         ),
     ] = "tissue",
+    anisotropy: Annotated[
+        float, typer.Option(help="g of the walk, 0 to 0.9; lengths follow by similarity.")
+    ] = 0.0,
     normal: Annotated[Path | None, typer.Option(help="Tangent-space normal map.")] = None,
     roughness: Annotated[
         Path | None, typer.Option(help="Grey roughness map; 0.5 is the default skin's.")
@@ -139,7 +142,7 @@ def render(
         mesh=surface if head is None else head.mesh,
         millimetres_per_unit=unit if head is None or unit is not None else head.millimetres,
         light=light, width=size, height=size, samples=samples, seed=seed, denoise=denoise,
-        turn=turn, device=device, normal=normal, roughness=0.5 if roughness is None else roughness,
+        turn=turn, device=device, anisotropy=anisotropy, normal=normal, roughness=0.5 if roughness is None else roughness,
     )  # fmt: skip
     order = Order(
         skin, output, scene,

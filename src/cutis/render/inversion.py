@@ -71,7 +71,7 @@ def single_scattering_albedo(
 
 @lru_cache(maxsize=16)
 def _table(anisotropy: float, refractive_index: float) -> NDArray[np.float64]:
-    """s = √(1 − α) at STEPS + 1 equal steps of the root of diffuse albedo, fine where it is dark."""
+    """s = √(1 − α) at STEPS + 1 equal steps of the root of diffuse albedo: fine in the dark."""
     s = 0.5 - 0.5 * np.cos(np.pi * np.arange(NODES + 1) / NODES)  # dense at both ends
     albedo = diffuse_albedo(1 - s * s, anisotropy, refractive_index)
     albedo[0], albedo[-1] = 1, 0  # nothing absorbed, nothing scattered
