@@ -1,5 +1,6 @@
 """Pictures of one skin: its textures written for Cycles, rendered, and put under their names."""
 
+import os
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
 
 Progress = Callable[[int, int, str], None]
 """Takes what is done, all, and what is being done."""
+METRE = 1000.0
+"""Millimetres per scene unit of an exported material, unless --unit says otherwise."""
 RADII = ("tissue", "maps")
 """Where mean free paths come from."""
 
@@ -116,6 +119,35 @@ def render_pictures(order: Order, blender: "Blender", progress: Progress) -> Ren
             progress(1, 1, "moving preview")
             write_animation(names, result.animation)
     return result
+
+
+def export_to(
+    order: Order, folder: Path, blender: Path | None, progress: Progress
+) -> tuple[Path, ...]:
+    """Writes the skin's material into a folder; the .blend only where a Blender is found.
+
+    A Blender that is named and does not work is an error.
+    """
+    from cutis.apps.options import made_folder
+    from cutis.render.blender import find_blender
+    from cutis.render.material_export import export_material
+    from cutis.render.medium import mean_free_path, of_maps
+
+    try:
+        found = find_blender(blender)
+    except CutisError:
+        if blender is not None or os.environ.get("BLENDER"):
+            raise
+        found = None
+    g = order.scene.anisotropy
+    red, green, blue = (float(length) for length in mean_free_path(g))
+    with made_folder(folder), order.opened() as skin:
+        return export_material(
+            skin, folder, skin.stem,
+            radius=(red, green, blue) if order.radius == "tissue" else lambda maps: of_maps(maps, g),
+            anisotropy=g, millimetres=order.scene.millimetres_per_unit or METRE,
+            edits=order.edits, amount=order.amount, blender=found, progress=progress,
+        ).files  # fmt: skip
 
 
 class _Feeds:

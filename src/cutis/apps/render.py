@@ -81,7 +81,10 @@ def render(
     ] = False,
     export: Annotated[
         Path | None,
-        typer.Option(help="Folder for the material: textures, MaterialX, Blender; no picture."),
+        typer.Option(
+            help="Folder for the material instead of a picture: textures, MaterialX and, where "
+            "Blender is, a .blend."
+        ),
     ] = None,
     blender: Annotated[
         Path | None,
@@ -100,7 +103,7 @@ def render(
     Example: cutis render out/face.skin.exr --mesh head.obj --melanin x1.5 -o tanned.png
     """
     from cutis.apps.console import out, steps
-    from cutis.apps.pictures import RADII, Order, check_fit, render_pictures
+    from cutis.apps.pictures import RADII, Order, check_fit, export_to, render_pictures
     from cutis.errors import CutisError
     from cutis.render.blender import find_blender
     from cutis.render.blender_install import install as install_blender
@@ -142,7 +145,8 @@ def render(
         mesh=surface if head is None else head.mesh,
         millimetres_per_unit=unit if head is None or unit is not None else head.millimetres,
         light=light, width=size, height=size, samples=samples, seed=seed, denoise=denoise,
-        turn=turn, device=device, anisotropy=anisotropy, normal=normal, roughness=0.5 if roughness is None else roughness,
+        turn=turn, device=device, anisotropy=anisotropy, normal=normal,
+        roughness=0.5 if roughness is None else roughness,
     )  # fmt: skip
     order = Order(
         skin, output, scene,
@@ -154,6 +158,14 @@ def render(
     if head is not None:
         with TextureFile(head.albedo) as texture:
             check_fit(order, texture.shape[1] / texture.shape[0], head.name)
+    if export is not None:
+        with steps(1, quiet) as progress:
+            files = export_to(order, export, blender, progress.at)
+        if not quiet:
+            for line in order.credits:
+                out.print(f"credit: {line}")
+            out.print(f"wrote {', '.join(file.name for file in files)} into {export}")
+        return
     found = find_blender(blender)
     with steps(1, quiet) as progress:
         result = render_pictures(order, found, progress.at)
