@@ -8,6 +8,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 CORE := $(VENV)/.core
 FULL := $(VENV)/.full
+BLENDER := $(VENV)/cutis-blender/cutis-blender
 INSTALL := $(BIN)/python -m pip --disable-pip-version-check install --quiet -c constraints.txt
 
 .DEFAULT_GOAL := help
@@ -17,15 +18,15 @@ INSTALL := $(BIN)/python -m pip --disable-pip-version-check install --quiet -c c
 help: ## list the targets
 	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | expand -t 10
 
-setup: $(FULL) ## make .venv with everything that tests, docs and training need
+setup: $(FULL) ## make .venv with everything that tests, docs, training and renders need
+	@$(MAKE) --no-print-directory blender || echo 'without Blender: tests that render are skipped'
 
-blender: $(CORE) ## install Blender as a Python module, for renders, into .venv/cutis-blender
-	$(BIN)/python -m cutis.render.blender_install
+blender: $(BLENDER) ## install Blender as a module, in .venv/cutis-blender
 
 demo: $(CORE) ## run the demonstration on the example capture, into demo/
 	$(BIN)/cutis demo -o demo
 
-test: lint types docs ## lint, types, docs and all tests
+test: setup lint types docs ## lint, types, docs and all tests
 	$(BIN)/python -m pytest
 
 lint: $(FULL) ## code style
@@ -52,7 +53,12 @@ $(CORE): pyproject.toml constraints.txt
 	$(INSTALL) --no-compile -e .
 	@touch $@
 
+# In an environment of its own, because it pins other versions; with Python 3.11 or 3.13 only.
+$(BLENDER): src/cutis/data/blender/constraints.txt | $(CORE)
+	$(BIN)/cutis render --install --quiet
+	@touch $@
+
 $(FULL): pyproject.toml constraints.txt
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(INSTALL) -e '.[cluster,dev,docs,onnx,train]'
+	$(INSTALL) -e '.[cluster,dev,docs,materialx,onnx,train]'
 	@touch $(CORE) $@

@@ -51,6 +51,20 @@ def shared_data() -> Path:
 
 
 @pytest.fixture(scope="session")
+def blender():
+    """The Blender that users would get; tests that render are skipped without one."""
+    from cutis.errors import CutisError
+    from cutis.render.blender import find_blender
+
+    try:
+        return find_blender()
+    except CutisError as error:
+        if os.environ.get("BLENDER"):
+            raise
+        pytest.skip(f"{error} (or `make blender`)")
+
+
+@pytest.fixture(scope="session")
 def capture1() -> tuple[Path, Path]:
     """The example capture: (8-bit sRGB albedo, mask)."""
     folder = ROOT / "examples"

@@ -5,6 +5,7 @@ import json
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -93,3 +94,44 @@ def one_line(ended: Ended) -> str:
 @pytest.fixture(name="one_line")
 def _one_line():
     return one_line
+
+
+@pytest.fixture
+def scheduler(tmp_path):
+    """Address of a Dask scheduler of its own."""
+    where = tmp_path / "scheduler.json"
+    process = subprocess.Popen(
+        [sys.executable, "-m", "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port",
+         "0", "--no-dashboard", "--no-show", "--scheduler-file", str(where)],
+        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=tmp_path,
+    )  # fmt: skip
+    try:
+        end = time.monotonic() + 60
+        while not (where.is_file() and where.stat().st_size > 0):
+            assert time.monotonic() < end, "no scheduler"
+            time.sleep(0.01)
+        yield json.loads(where.read_text())["address"]
+    finally:
+        process.kill()
+        process.wait()
+
+
+@pytest.fixture
+def worker(scheduler, tmp_path):
+    """`worker()` starts a worker of one thread, a process; `before` is code to run first."""
+    started: list[subprocess.Popen] = []
+
+    def start(before: str = "") -> subprocess.Popen:
+        code = f"{before}\nfrom distributed.cli.dask_worker import main; main()"
+        started.append(subprocess.Popen(
+            [sys.executable, "-c", code, scheduler, "--no-nanny", "--nthreads", "1",
+             "--no-dashboard", "--local-directory", str(tmp_path)],
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=tmp_path,
+            env={**os.environ, "NUMBA_NUM_THREADS": "1"},
+        ))  # fmt: skip
+        return started[-1]
+
+    yield start
+    for process in started:
+        process.kill()
+        process.wait()

@@ -182,3 +182,27 @@ def test_kills_lose_nothing(tiles, tmp_path, process):
     assert process(*arguments).code == 0
     assert written(out) == whole
     assert {path.name: path.read_bytes() for path in out.glob("*.report.json")} == expected
+
+
+def test_a_cluster_that_loses_a_worker(show, scheduler, worker, cutis, tmp_path):
+    """Two workers, one killed after the first result: all are there, and as without a cluster."""
+    (show / "bad.exr").unlink()
+    out, here = tmp_path / "out", tmp_path / "here"
+    workers = [worker() for _ in range(2)]
+    arguments = ["estimate", str(show), "--exposure", "auto", "--sequence", "--quiet"]
+    with subprocess.Popen(
+        [sys.executable, "-c", MAIN, *arguments, "-o", str(out), "--cluster", scheduler],
+        stderr=subprocess.PIPE, text=True,
+    ) as run:  # fmt: skip
+        end = time.monotonic() + 90
+        while not list(out.glob("*.report.json")) and run.poll() is None:
+            assert time.monotonic() < end
+            time.sleep(0.01)
+        workers[0].kill()
+        said = run.communicate(timeout=90)[1]
+    assert run.returncode == 0, said
+    assert cutis(*arguments, "-o", here).code == 0
+    assert written(out) == written(here)
+    for name in "abc":
+        spread, alone = (load_maps(folder / f"{name}.skin.exr") for folder in (out, here))
+        np.testing.assert_array_equal(spread.parameters(), alone.parameters())

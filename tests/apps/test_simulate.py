@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -132,37 +131,10 @@ def test_another_simulation_is_not_mixed_in(tmp_path, cutis):
     assert cutis("simulate", "--dataset", "2", "--photons", "10", "-o", out).code == 0
 
 
-@pytest.fixture
-def scheduler(tmp_path):
-    """Address of a Dask scheduler of its own."""
-    where = tmp_path / "scheduler.json"
-    process = subprocess.Popen(
-        [sys.executable, "-m", "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port",
-         "0", "--no-dashboard", "--no-show", "--scheduler-file", str(where)],
-        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=tmp_path,
-    )  # fmt: skip
-    try:
-        wait_for(lambda: where.is_file() and where.stat().st_size > 0)
-        yield json.loads(where.read_text())["address"]
-    finally:
-        process.kill()
-        process.wait()
-
-
-def worker(address: str, folder: Path) -> subprocess.Popen:
-    code = f"{QUICK}from distributed.cli.dask_worker import main; main()"
-    return subprocess.Popen(
-        [sys.executable, "-c", code, address, "--no-nanny", "--nthreads", "1", "--no-dashboard",
-         "--local-directory", str(folder)],
-        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=folder,
-        env={**os.environ, "NUMBA_NUM_THREADS": "1"},
-    )  # fmt: skip
-
-
-def test_a_cluster_that_loses_a_worker(scheduler, cutis, tmp_path):
+def test_a_cluster_that_loses_a_worker(scheduler, worker, cutis, tmp_path):
     """Two workers, one killed midway: no skin is missing or twice, and every bit the same."""
     out, arguments = tmp_path / "set.npz", ("--dataset", "24", "--photons", "2000")
-    workers = [worker(scheduler, tmp_path) for _ in range(2)]
+    workers = [worker(QUICK) for _ in range(2)]
     process = start("simulate", *arguments, "--cluster", scheduler, "-o", out)
     try:
         parts = tmp_path / "set.npz.parts"
@@ -173,9 +145,6 @@ def test_a_cluster_that_loses_a_worker(scheduler, cutis, tmp_path):
     finally:
         process.kill()
         process.wait()
-        for one in workers:
-            one.kill()
-            one.wait()
     plain = tmp_path / "plain.npz"
     assert cutis("simulate", *arguments, "-o", plain).code == 0
     with np.load(out) as spread, np.load(plain) as once:

@@ -70,7 +70,7 @@ def estimate(
     from cutis.apps.batch import estimate_sets, here, processes
     from cutis.apps.console import out, steps
     from cutis.apps.estimate_file import Settings, Task
-    from cutis.apps.inputs import capture_sets, companion, gaps
+    from cutis.apps.inputs import capture_sets, companion, gaps, odd_ones
     from cutis.colour import light_conversion
     from cutis.errors import CutisError
     from cutis.inverse import load_model
@@ -113,8 +113,11 @@ def estimate(
         raise CutisError(str(failed[0].failure))
     if not quiet:
         for tasks in sets:
-            for name in gaps(tuple(task.face for task in tasks)):
+            captures = tuple(task.face for task in tasks)
+            for name in gaps(captures):
                 out.print(f"{name} is missing between other tiles of its row")
+            for line in odd_ones(captures, colorspace, ocio):
+                out.print(line)
         if alone:
             assert found[0].report is not None
             say(found[0].report, white)

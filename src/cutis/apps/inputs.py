@@ -1,10 +1,13 @@
 """What `cutis estimate` is given: files, folders, patterns and UDIM sets."""
 
+import contextlib
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
 from cutis.errors import CutisError
 from cutis.optics import NAMES
+from cutis.textures import TextureFile
 from cutis.textures.headers import EXTENSIONS
 from cutis.textures.udim import TOKEN, missing_tiles, tile_of, udim_pattern, udim_tiles
 
@@ -88,6 +91,27 @@ def gaps(captures: Set) -> list[str]:
     head = len(pattern.name.partition(TOKEN)[0])
     numbers = [int(path.name[head : head + 4]) for path in captures]
     return [tile_of(pattern, number).name for number in missing_tiles(numbers)]
+
+
+def odd_ones(captures: Set, colorspace: str = "auto", ocio: str | None = None) -> list[str]:
+    """What to say of captures of a set that are stored unlike most of it: depth, channels, space.
+
+    Sizes may differ, as tiles' do. Captures that cannot be read are left to what reads them.
+    """
+    kinds: dict[Path, str] = {}
+    for path in captures if len(captures) > 2 else ():
+        with contextlib.suppress(CutisError), TextureFile(path, colorspace, ocio) as file:
+            pixels = file.rows(slice(0, 0)).pixels
+            kinds[path] = f"{pixels.dtype} {','.join(file.channels)} in {file.space.name}"
+    counts = Counter(kinds.values()).most_common()
+    if len(counts) < 2 or counts[0][1] == counts[1][1]:
+        return []
+    usual = counts[0][0]
+    return [
+        f"{path.name} is odd: it holds {kind}, most of its set {usual}"
+        for path, kind in kinds.items()
+        if kind != usual
+    ]
 
 
 def companion(path: Path | None, capture: Path) -> Path | None:

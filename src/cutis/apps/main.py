@@ -14,6 +14,7 @@ from cutis.apps import (
     export,
     figures,
     info,
+    render,
     simulate,
     spectrum,
     train,
@@ -53,6 +54,7 @@ def _options(
 
 app.command("estimate")(estimate.estimate)
 app.command("edit")(edit.edit)
+app.command("render")(render.render)
 app.command("export")(export.export)
 app.command("spectrum")(spectrum.spectrum)
 app.command("simulate")(simulate.simulate)

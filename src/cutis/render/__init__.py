@@ -1,1 +1,1 @@
-"""Pictures of skin by path tracing."""
+"""Pictures: subsurface inversion, materials, and scenes that Cycles renders."""

@@ -3,6 +3,7 @@
 from cutis.transport.discrete_ordinates import (
     Balance,
     Layer,
+    half_space_albedo,
     stack_balance,
     two_layer_albedo,
 )
@@ -16,6 +17,7 @@ __all__ = [
     "Walk",
     "adding_doubling",
     "fresnel_reflectance",
+    "half_space_albedo",
     "stack_balance",
     "two_layer_albedo",
     "walk",

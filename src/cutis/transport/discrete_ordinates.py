@@ -223,6 +223,35 @@ def two_layer_albedo(
     return result
 
 
+def half_space_albedo(
+    absorption: ArrayLike,
+    scattering: float,
+    anisotropy: float,
+    *,
+    dimension: int = 3,
+    refractive_index: float = 1.0,
+    incidence: float | str = "lambertian",
+    count: int = 48,
+) -> Array:
+    """Albedo (n,) of homogeneous half spaces of `absorption` (n,) in cm⁻¹, else alike.
+
+    As `stack_balance` of one infinite layer, batched. Raises CutisError for coefficients that are
+    not physical.
+    """
+    given = np.atleast_1d(np.asarray(absorption, dtype=np.float64))
+    _check_two_layers(given, given, np.ones(1), scattering, anisotropy)
+    beam = beam_cosine(incidence)
+    nodes = directions(count, dimension, refractive_index, beam)
+    flux = nodes.flux
+    fresnel = fresnel_reflectance(nodes.cosine, 1.0 / refractive_index)
+    source = flux / (flux @ flux) if beam is None else np.eye(len(flux))[-1] / flux[-1]
+    k, _, dual = modes(nodes, given, scattering, anisotropy)
+    whole = _half_space(k, dual) + np.diag((1.0 - fresnel) / (1.0 + fresnel))
+    drive = np.broadcast_to((2.0 * source / (1.0 + fresnel))[:, None], (*whole.shape[:-1], 1))
+    up = np.linalg.solve(whole, drive)[..., 0] - source
+    return np.asarray(up @ (flux * (1.0 - fresnel) / (1.0 + fresnel)))
+
+
 def check_layers(layers: Sequence[Layer]) -> None:
     """Raises CutisError when a layer is not physical or a half space lies above another layer."""
     for number, layer in enumerate(layers, 1):

@@ -698,7 +698,8 @@ class Studio:
         self.room: Room | None = None
         self.key = self.device = None
 
-    def render(self, picture):
+    def arrange(self, picture):
+        """Sets everything up for a picture; returns the material of its skin."""
         paths = ("base_colour", "radius", "normal", "roughness")
         self.textures.keep({picture[p] for p in paths if isinstance(picture[p], str)})
         settings(picture)
@@ -719,11 +720,47 @@ class Studio:
         backdrop = picture["backdrop"] and not picture["transparent"]
         self.room = Room(picture["light"], subject.radius, backdrop)
         frame(picture, subject, self.camera)
-        self.scene.render.filepath = picture["output"]
-        bpy.ops.render.render(write_still=True)
+        return material
+
+    def render(self, picture):
+        material = self.arrange(picture)
+        self.shoot(picture["output"])
         bpy.data.materials.remove(material)
-        if not os.path.exists(picture["output"]):
+
+    def shoot(self, output):
+        self.scene.render.filepath = output
+        bpy.ops.render.render(write_still=True)
+        if not os.path.exists(output):
             raise Problem("Cycles wrote no picture")
+
+    def save(self, picture):
+        """Writes a .blend: the material as an asset, on its subject, with lights and camera.
+
+        Textures lie beside the file and are named relative to it. All is made in the units that the
+        material is for.
+        """
+        global MILLIMETRE
+        asset = picture["asset"]
+        MILLIMETRE = asset["units_per_millimetre"]
+        material = self.arrange(picture)
+        material.name = asset["name"]
+        self.shoot(picture["output"] + ".exr")
+        show(material, picture["output"] + ".exr")
+        material.asset_mark()
+        for key in ("author", "description", "license", "copyright"):
+            setattr(material.asset_data, key, asset[key])
+        for tag in asset["tags"]:
+            material.asset_data.tags.new(tag)
+        scale_by_value(material.node_tree, picture["scale"])
+        lay_out(material.node_tree)
+        for path in (1000 * "/", "//"):  # the old path would stay in the file behind the new one
+            self.scene.render.filepath = path
+        for image in self.textures.images.values():
+            image.name = os.path.basename(image.filepath)
+            image.filepath = "//" + os.path.basename(image.filepath)
+        bpy.ops.wm.save_as_mainfile(
+            filepath=picture["output"], compress=True, relative_remap=False, copy=True
+        )
 
     def look_at(self, picture):
         """The subject; its mesh is loaded unless it is there."""
@@ -744,6 +781,51 @@ class Studio:
         return self.subject
 
 
+# Materials as assets ---------------------------------------------------------------------------
+
+
+def show(material, path):
+    """A rendered picture as the preview of a material in the asset browser."""
+    image = bpy.data.images.load(path)
+    pixels = np.empty(4 * image.size[0] * image.size[1], np.float32)
+    image.pixels.foreach_get(pixels)
+    texels = pixels.reshape(-1, 4)
+    rgb = texels[:, :3].clip(0, 1)
+    texels[:, :3] = np.where(rgb <= 0.0031308, 12.92 * rgb, 1.055 * rgb ** (1 / 2.4) - 0.055)
+    preview = material.preview_ensure()
+    preview.image_size = image.size
+    preview.image_pixels_float.foreach_set(pixels)
+    bpy.data.images.remove(image)
+
+
+def scale_by_value(tree, factor):
+    """One node for the length of a millimetre, where each lobe had a number of its own."""
+    unit = tree.nodes.new("ShaderNodeValue")
+    unit.label = unit.name = "Scene units per millimetre"
+    unit.outputs[0].default_value = MILLIMETRE
+    scale = unit.outputs[0]
+    if factor != 1:
+        product = tree.nodes.new("ShaderNodeMath")
+        product.operation, product.inputs[1].default_value = "MULTIPLY", factor
+        tree.links.new(scale, product.inputs[0])
+        scale = product.outputs[0]
+    for node in tree.nodes:
+        if node.type == "BSDF_PRINCIPLED":
+            tree.links.new(scale, node.inputs["Subsurface Scale"])
+
+
+def lay_out(tree):
+    """Nodes in columns, each left of what it goes into."""
+    column = {node: 0 for node in tree.nodes}
+    for _ in tree.nodes:
+        for link in tree.links:
+            column[link.from_node] = max(column[link.from_node], column[link.to_node] + 1)
+    lowest = [0] * (1 + max(column.values()))
+    for node, place in column.items():
+        node.location = (-320 * place, lowest[place])
+        lowest[place] -= 700 if node.type == "BSDF_PRINCIPLED" else 320
+
+
 def main(path):
     with open(path, encoding="utf-8") as file:
         pictures = json.load(file)["pictures"]
@@ -752,7 +834,7 @@ def main(path):
         for number, picture in enumerate(pictures):
             progress.picture, progress.sample = number, -1
             start = time.monotonic()
-            studio.render(picture)
+            (studio.save if "asset" in picture else studio.render)(picture)
             tell(event="done", picture=number, seconds=round(time.monotonic() - start, 3))
     except Problem as problem:
         tell(event="error", picture=number, message=str(problem))

@@ -1,0 +1,90 @@
+"""A skin material as a Blender file: an asset to append, which also opens as a scene.
+
+Blender writes it in a process of its own, by the script that renders pictures. The file names its
+textures relative to itself, so that a folder with both can be moved.
+"""
+
+import json
+import shutil
+import subprocess
+import tempfile
+from importlib import resources
+from pathlib import Path
+
+from cutis.errors import CutisError
+from cutis.render.blender import Blender, find_blender, quiet_environment
+from cutis.render.material import Material
+from cutis.render.scene import Scene
+from cutis.textures import replacing
+
+PREVIEW = 128
+"""Pixels along a side of the picture in the asset browser."""
+_PATIENCE = 600  # seconds
+
+
+def write_blender(material: Material, path: Path, blender: Blender | None = None) -> None:
+    """Writes NAME.blend beside the textures of a material, which must be there.
+
+    The material is an asset; opened as a file, it shows on a ball in the studio light, ready to be
+    rendered. `blender` is by default that of `find_blender()`. Raises CutisError where Blender is
+    missing or fails.
+    """
+    blender = blender or find_blender()
+    scene = preview_scene(material, path.parent)
+    with tempfile.TemporaryDirectory(prefix="cutis-blend-", ignore_cleanup_errors=True) as name:
+        folder = Path(name)
+        made = folder / "material.blend"
+        job = scene.job(made) | {"asset": _asset(material)}
+        (folder / "job.json").write_text(json.dumps({"pictures": [job]}), encoding="utf-8")
+        script = resources.files("cutis.data").joinpath("blender", "scene.py")
+        with resources.as_file(script) as file:
+            _run(blender.command(file, str(folder / "job.json")), folder)
+        if not made.is_file():
+            raise CutisError(f"{path}: Blender wrote no file")
+        with replacing(path) as temporary:
+            shutil.copyfile(made, temporary)
+
+
+def preview_scene(material: Material, folder: Path) -> Scene:
+    """The scene that the file opens as, in the units of the material."""
+    mapped = material.radius_texture
+    return Scene(
+        base_colour=folder / material.albedo,
+        radius=material.radius if mapped is None else folder / mapped,
+        anisotropy=max(0.0, material.anisotropy),
+        specular=material.gloss.strength,
+        width=PREVIEW,
+        height=PREVIEW,
+        samples=32,
+        device="cpu",
+    )
+
+
+def _asset(material: Material) -> dict[str, object]:
+    return {
+        "name": material.name,
+        "units_per_millimetre": material.scale,
+        "author": "cutis",
+        "description": "Skin: subsurface medium from its albedo, lengths in mm by one node",
+        "license": "",
+        "copyright": "; ".join(material.credits),
+        "tags": ["skin", "subsurface"],
+    }
+
+
+def _run(command: list[str], folder: Path) -> None:
+    try:
+        done = subprocess.run(
+            command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+            timeout=_PATIENCE, env=dict(quiet_environment(folder)), cwd=folder,
+        )  # fmt: skip
+    except subprocess.TimeoutExpired as error:
+        raise CutisError(f"Blender did not write the material in {_PATIENCE} s") from error
+    lines = done.stdout.decode("utf-8", "replace").splitlines()
+    events = [json.loads(line[6:]) for line in lines if line.startswith("CUTIS {")]
+    told = [event["message"] for event in events if event["event"] == "error"]
+    if told:
+        raise CutisError(told[0])
+    if done.returncode:
+        last = next((line for line in reversed(lines) if line.strip()), "nothing")
+        raise CutisError(f"Blender ended with status {done.returncode}; it said: {last[:200]}")

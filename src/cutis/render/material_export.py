@@ -1,0 +1,89 @@
+"""All files of a skin material at once: textures, description, MaterialX, Blender."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+
+from cutis.maps import Edit
+from cutis.render.blender import Blender
+from cutis.render.blender_material import write_blender
+from cutis.render.heads import credits_of
+from cutis.render.material import Gloss, Material, write_description
+from cutis.render.material_textures import Progress, Radius, write_textures
+from cutis.render.materialx import write_materialx
+from cutis.render.skin import Skin
+
+
+@dataclass(frozen=True)
+class Exported:
+    """A material and the files that were written of it."""
+
+    material: Material
+    files: tuple[Path, ...]
+
+
+def export_material(
+    skin: Skin,
+    folder: Path,
+    name: str,
+    *,
+    radius: Radius,
+    anisotropy: float,
+    millimetres: float,
+    gloss: Gloss | None = None,
+    edits: Sequence[Edit] = (),
+    amount: float = 1.0,
+    blender: Blender | None = None,
+    progress: Progress | None = None,
+) -> Exported:
+    """Writes the material of a skin, with edits, into a folder that exists.
+
+    NAME.albedo.exr, NAME.single_scattering.exr, NAME.radius.exr (if `radius` varies; see
+    `write_textures`), NAME.material.json, NAME.mtlx and, where `blender` is given, NAME.blend.
+    `millimetres` is the length of one unit of the scene. Raises CutisError as the writers do.
+    """
+    textures = write_textures(skin, folder, name, radius, anisotropy, edits, amount, progress)
+    material = Material(
+        name=name,
+        albedo=textures.albedo,
+        single_scattering=textures.single_scattering,
+        radius=textures.radius,
+        radius_texture=textures.radius_texture,
+        anisotropy=anisotropy,
+        millimetres=millimetres,
+        gloss=gloss or Gloss(),
+        notes={
+            "boundary": "index-matched: the albedo is that of light that has entered",
+            "made_by": f"cutis {version('cutis')}",
+            "source": skin.path.name,
+            **({} if skin.maps is None else {"model": skin.maps.model}),
+            "edits": [*_earlier(skin), *(f"{edit}" + _share(amount) for edit in edits)],
+        },
+        credits=credits_of(*_origins(skin)),
+    )
+    description, document = folder / f"{name}.material.json", folder / f"{name}.mtlx"
+    write_description(material, description)
+    write_materialx(material, document)
+    names = [textures.albedo, textures.single_scattering, textures.radius_texture]
+    files = [*(folder / file for file in names if file), description, document]
+    if blender is not None:
+        files.append(folder / f"{name}.blend")
+        write_blender(material, files[-1], blender)
+    return Exported(material, tuple(files))
+
+
+def _earlier(skin: Skin) -> tuple[str, ...]:
+    return () if skin.maps is None else skin.maps.edits
+
+
+def _share(amount: float) -> str:
+    return f", amount {amount:g}" if amount < 1 else ""
+
+
+def _origins(skin: Skin) -> list[Path]:
+    """The files that a skin was made from, there or not."""
+    found = [skin.path, *([] if skin.capture is None else [skin.capture.path])]
+    if skin.maps is not None and "source" in skin.maps.provenance:
+        found.append(skin.path.parent / skin.maps.provenance["source"])
+    return found

@@ -1,0 +1,81 @@
+"""How far light goes in the medium that a renderer walks in: its mean free path per RGB band.
+
+A homogeneous medium stands for the layers. Its single-scattering albedo follows from the diffuse
+albedo (`inversion`); its lengths follow from the tissue. By similarity, media of equal reduced
+scattering μs′ = (1 − g) μs spread light alike, so that the mean free path of a walk with
+anisotropy g is (1 − g) times that of an isotropic one: 1/μs′ at g = 0.
+
+Bands are means over wavelengths under D65 with the positive part of sRGB's matching functions as
+weights, those of light that a band gains from. `of_maps` adds what the dermis absorbs,
+1 / (μs′ + μa): light spreads there, while the epidermis, thinner than a mean free path, filters
+what goes through and spreads it little, so that melanin shortens no path here.
+"""
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.ndimage import map_coordinates
+
+from cutis.colour.spectra import spectrum_to_rgb
+from cutis.maps import SkinMaps
+from cutis.optics import WAVELENGTHS
+from cutis.optics.tissue import ALIAGA2022, Tissue
+
+PER_CM = 10.0
+"""Millimetres in a centimetre: a coefficient in cm⁻¹ is a length of 10 mm over it."""
+BLOOD, OXYGENATION = 65, 17
+"""Nodes of the table over blood (equal steps of its fourth root) and oxygenation."""
+
+
+def band_weights() -> NDArray[np.float64]:
+    """(41, 3) weights of `WAVELENGTHS` in red, green and blue; each column sums to 1."""
+    gained = np.clip(spectrum_to_rgb(WAVELENGTHS), 0, None)
+    return np.asarray(gained / gained.sum(axis=0))
+
+
+def mean_free_path(anisotropy: float = 0.0, tissue: Tissue = ALIAGA2022) -> NDArray[np.float64]:
+    """(3,) mean free path in mm of red, green and blue, from the dermis' reduced scattering.
+
+    `anisotropy` is the g that the renderer walks with.
+    """
+    scattering = tissue.reduced_scattering(WAVELENGTHS) * tissue.dermis_scattering
+    return (1 - anisotropy) * (PER_CM / scattering) @ band_weights()
+
+
+def mean_free_path_in(
+    blood: ArrayLike,
+    oxygenation: ArrayLike,
+    anisotropy: float = 0.0,
+    tissue: Tissue = ALIAGA2022,
+) -> NDArray[np.float64]:
+    """(..., 3) the same in mm with the absorption of a dermis of `blood`, `oxygenation` (...)."""
+    scattering = tissue.reduced_scattering(WAVELENGTHS) * tissue.dermis_scattering
+    absorption = tissue.dermis_absorption(blood, oxygenation, WAVELENGTHS)
+    return np.asarray((1 - anisotropy) * (PER_CM / (scattering + absorption)) @ band_weights())
+
+
+def of_maps(
+    skin: SkinMaps, anisotropy: float = 0.0, tissue: Tissue = ALIAGA2022
+) -> NDArray[np.float32]:
+    """(H, W, 3) `mean_free_path_in` of every texel, from a table; off the mask `mean_free_path`."""
+    table = _table(tissue)
+    place = np.stack([
+        np.sqrt(np.sqrt(np.clip(skin.blood, 0, 1))) * (BLOOD - 1),
+        np.clip(skin.oxygenation, 0, 1) * (OXYGENATION - 1),
+    ])  # fmt: skip
+    found = np.empty((*skin.shape, 3), np.float32)
+    for band in range(3):
+        map_coordinates(table[band], place, found[..., band], order=1, mode="nearest")
+    found *= np.float32(1 - anisotropy)
+    found[skin.mask <= 0] = mean_free_path(anisotropy, tissue)
+    return found
+
+
+@lru_cache(maxsize=8)
+def _table(tissue: Tissue) -> NDArray[np.float64]:
+    """(3, BLOOD, OXYGENATION) isotropic mean free paths in mm."""
+    blood, oxygenation = np.meshgrid(
+        np.linspace(0, 1, BLOOD) ** 4, np.linspace(0, 1, OXYGENATION), indexing="ij"
+    )
+    return np.moveaxis(mean_free_path_in(blood, oxygenation, 0.0, tissue), -1, 0)

@@ -1,0 +1,119 @@
+"""The skin that a picture shows: diffuse albedo of maps with edits, or of a texture, in bands.
+
+Pictures need the albedo itself: the calibration that the estimate found is applied, so that a
+capture's cast and exposure do not end up in the light. Of maps whose capture is there, what the
+model does not explain (beard, eyes, fine detail) rides along, as it does in edited textures.
+"""
+
+import os
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cutis.errors import CutisError
+from cutis.maps import Edit, MapsFile, SkinMaps, find_source, open_source
+from cutis.textures import MaskFile, TextureFile
+from cutis.textures.closing import Closing
+
+MAPS = ".skin.exr"
+"""How names of files of maps end."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """Albedo (h, W, 3) in [0, 1], linear sRGB, of some rows, and their maps if there are any."""
+
+    albedo: NDArray[np.float32]
+    maps: SkinMaps | None
+
+
+class Skin(Closing):
+    """Diffuse albedo of a file, some rows at a time.
+
+    `path` is NAME.skin.exr, or an albedo texture, whose colours are taken as they are. `source` is
+    the capture of maps, where it is not what their header names; `model_only` leaves it out.
+    `paint` (a mask file) says where edits apply. `shape` is (H, W). Close it, or use it in a with
+    block. Raises CutisError for files that cannot be read.
+    """
+
+    def __init__(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        source: Path | None = None,
+        model_only: bool = False,
+        paint: Path | None = None,
+        colorspace: str = "auto",
+        ocio: str | None = None,
+    ) -> None:
+        self.path = Path(path)
+        self.maps: MapsFile | None = None
+        self.capture: TextureFile | None = None
+        self._paint: MaskFile | None = None
+        try:
+            if self.path.name.endswith(MAPS):
+                self.maps = MapsFile(self.path)
+                self.shape = self.maps.shape
+                if not model_only:
+                    self._find_capture(source)
+                if paint is not None:
+                    self._paint = MaskFile(paint, self.shape)
+            else:
+                self.capture = TextureFile(self.path, colorspace, ocio)
+                self.shape = self.capture.shape
+        except BaseException:
+            self.close()
+            raise
+
+    def _find_capture(self, given: Path | None) -> None:
+        assert self.maps is not None
+        notes = self.maps.provenance
+        if given is None and "source" not in notes:
+            return
+        path = find_source(notes, self.path, given)
+        self.capture = open_source(notes, path)
+        if self.capture.shape != self.shape:
+            raise CutisError(f"{path}: the texture is {self.capture.shape}, the maps {self.shape}")
+
+    @property
+    def stem(self) -> str:
+        """The file's name without what it ends in."""
+        name = self.path.name
+        return name.removesuffix(MAPS) if name.endswith(MAPS) else self.path.stem
+
+    def close(self) -> None:
+        """Lets go of the files."""
+        for file in (self.maps, self.capture, self._paint):
+            if file is not None:
+                file.close()
+
+    def bands(self) -> Iterator[slice]:
+        """Slices of rows that cover the image."""
+        opened = self.maps or self.capture
+        assert opened is not None
+        return opened.bands()
+
+    def rows(self, rows: slice, edits: Sequence[Edit] = (), amount: float = 1.0) -> Rows:
+        """Some rows, edited; CutisError for edits of a texture, which has no maps."""
+        if self.maps is None:
+            if edits:
+                raise CutisError(
+                    f"{self.path.name} is a texture; edits need its maps (NAME{MAPS}), which "
+                    "cutis estimate makes"
+                )
+            assert self.capture is not None
+            return Rows(_clipped(self.capture.rows(rows).linear()), None)
+        skin = self.maps.rows(rows)
+        if self.capture is not None:
+            skin = replace(skin, source=self.capture.rows(rows).linear())
+        if edits:
+            where = None if self._paint is None else self._paint.rows(rows)
+            skin = skin.apply(list(edits), where, amount=amount)
+        return Rows(_clipped(skin.calibration.apply(skin.albedo())), skin)
+
+
+def _clipped(colours: NDArray[np.float32]) -> NDArray[np.float32]:
+    return np.clip(colours, 0, 1)

@@ -1,0 +1,72 @@
+import numpy as np
+import pytest
+
+from cutis.maps import SkinMaps
+from cutis.optics import WAVELENGTHS
+from cutis.optics.tissue import ALIAGA2022
+from cutis.render.medium import band_weights, mean_free_path, mean_free_path_in, of_maps
+
+RNG = np.random.default_rng(4)
+SHAPE = (30, 20)
+
+
+def maps(mask=None):
+    def one(low, high):
+        return RNG.uniform(low, high, SHAPE).astype(np.float32)
+
+    mask = np.ones(SHAPE, np.float32) if mask is None else mask
+    return SkinMaps(
+        one(0.001, 0.5), one(0.001, 1.0), one(10, 250), one(0.1, 1), one(0, 0.999), mask
+    )
+
+
+def test_bands_lie_where_their_colours_do():
+    weights = band_weights()
+    np.testing.assert_allclose(weights.sum(axis=0), 1)
+    assert (weights >= 0).all()
+    red, green, blue = WAVELENGTHS @ weights
+    assert 590 < red < 620
+    assert 530 < green < 560
+    assert 440 < blue < 470
+
+
+def test_lengths_of_the_published_scattering():
+    """36.4 (0.48 (λ/500)⁻⁴ + 0.52 (λ/500)^−0.22) cm⁻¹: 46.0 at 450 nm, 26.6 at 600 nm."""
+    at = ALIAGA2022.reduced_scattering([450, 600])
+    np.testing.assert_allclose(at, [46.0, 26.6], atol=0.1)
+    red, green, blue = mean_free_path()
+    assert 10 / ALIAGA2022.reduced_scattering(590) < red < 10 / ALIAGA2022.reduced_scattering(630)
+    assert red > green > blue
+    assert 10 / ALIAGA2022.reduced_scattering(440) < blue < 10 / ALIAGA2022.reduced_scattering(480)
+
+
+def test_a_walk_ahead_takes_shorter_steps():
+    np.testing.assert_allclose(mean_free_path(0.8), 0.2 * mean_free_path())
+
+
+def test_absorption_shortens_paths():
+    bloodless = mean_free_path_in(0.0, 0.7)
+    assert (bloodless < mean_free_path()).all()
+    np.testing.assert_allclose(bloodless, mean_free_path(), rtol=0.06)  # the baseline is weak
+    rich = mean_free_path_in(0.2, 0.7)
+    assert (rich < bloodless).all()
+    assert rich[0] / bloodless[0] > 1.5 * rich[2] / bloodless[2]  # blood absorbs blue
+
+
+def test_maps_come_from_a_table_close_to_the_formula():
+    mask = np.ones(SHAPE, np.float32)
+    mask[:, 0] = 0
+    skin = maps(mask)
+    found = of_maps(skin, 0.5)
+    assert found.dtype == np.float32
+    np.testing.assert_allclose(
+        found[:, 1:], mean_free_path_in(skin.blood, skin.oxygenation, 0.5)[:, 1:], rtol=2e-3
+    )
+    np.testing.assert_allclose(found[:, 0], np.tile(mean_free_path(0.5), (30, 1)), rtol=1e-6)
+
+
+@pytest.mark.parametrize("melanin", [0.01, 0.3])
+def test_melanin_shortens_none(melanin):
+    skin = maps()
+    again = skin.replace(melanin=melanin)
+    np.testing.assert_array_equal(of_maps(skin), of_maps(again))
