@@ -369,6 +369,25 @@ def new_material(name):
     return material, Nodes(material.node_tree)
 
 
+def faced(nodes, colour, of_view, of_colour):
+    """The colour c as c (1 + k h), k a cubic of the cosine of the view, h one of c."""
+    if isinstance(colour, list):
+        colour = nodes.add("ShaderNodeCombineXYZ", dict(enumerate(colour))).outputs[0]
+    place = nodes.add("ShaderNodeNewGeometry").outputs
+    view = {0: place["Normal"], 1: place["Incoming"]}
+    cosine = nodes.add("ShaderNodeVectorMath", view, operation="DOT_PRODUCT").outputs["Value"]
+    cosine = nodes.add("ShaderNodeMath", {0: cosine}, operation="ABSOLUTE").outputs[0]
+    k, h = of_view[3], [of_colour[3]] * 3
+    for a, b in zip(of_view[2::-1], of_colour[2::-1], strict=True):
+        k = nodes.add("ShaderNodeMath", {0: k, 1: cosine, 2: a}, operation="MULTIPLY_ADD")
+        k = k.outputs[0]
+        step = {0: h, 1: colour, 2: [b] * 3}
+        h = nodes.add("ShaderNodeVectorMath", step, operation="MULTIPLY_ADD").outputs[0]
+    change = nodes.add("ShaderNodeVectorMath", {0: h, "Scale": k}, operation="SCALE").outputs[0]
+    changed = {0: colour, 1: change, 2: colour}
+    return nodes.add("ShaderNodeVectorMath", changed, operation="MULTIPLY_ADD").outputs[0]
+
+
 def skin_material(picture, textures):
     """Random-walk subsurface below two lobes of GGX."""
     material, nodes = new_material("skin")
@@ -381,6 +400,8 @@ def skin_material(picture, textures):
         return nodes.add("ShaderNodeTexImage", image=image, extension="EXTEND").outputs["Color"]
 
     colour = source(picture["base_colour"], LINEAR)
+    if picture["facing"]:
+        colour = faced(nodes, colour, *picture["facing"])
     inputs = {
         "Base Color": colour if not isinstance(colour, list) else [*colour, 1.0],
         "IOR": SKIN_IOR,
