@@ -32,9 +32,9 @@ class Scene:
         radius: what it is given as subsurface radius, mm, times `scale`; anisotropy: 0–0.99;
         subsurface_ior: 1.01–3.8, used by `random_walk_skin` alone; facing: two cubics k and h, the
         base colour c becomes c (1 + k(cosine of the view) h(c)). `cutis.render.cycles` says which
-        of them bring back a wanted albedo. specular: share of the surface's reflection (two
-        GGX lobes at index 1.4), 0–1; roughness: their mean roughness, 0–1, or a file; normal: a
-        tangent-space normal map.
+        of them bring back a wanted albedo. specular: share of the surface's reflection, 0–1:
+        two GGX lobes at index 1.4 [walter2007], 85 % of 0.75 times the roughness and 15 % of 1.30
+        times [unreal2022]; roughness: 0–1, or a file; normal: a tangent-space normal map.
     What is seen
         mesh: one of `MESHES` or a file in one of `FORMATS`, +Y up, the face towards +Z in files
         of OBJ and glTF; millimetres_per_unit: of the file, None to take it for a head 240 mm high;
