@@ -62,7 +62,7 @@ def test_single_scattering_gives_the_albedo_back(maps, tmp_path):
     found = write(maps, tmp_path)
     stored, metadata = stacked(tmp_path / found.single_scattering)
     assert metadata["colorInteropID"] == "data"
-    np.testing.assert_allclose(diffuse_albedo(stored, G), shown(maps), rtol=1e-3)
+    np.testing.assert_allclose(diffuse_albedo(stored, G), shown(maps), rtol=1e-5)
 
 
 def test_half_would_be_too_coarse_for_single_scattering(maps, tmp_path):
