@@ -13,7 +13,7 @@ from pathlib import Path
 
 from cutis.errors import CutisError
 from cutis.render.blender import Blender, find_blender, quiet_environment
-from cutis.render.material import Material
+from cutis.render.material import NEUTRAL, Material
 from cutis.render.scene import Scene
 from cutis.textures import replacing
 
@@ -53,6 +53,8 @@ def preview_scene(material: Material, folder: Path) -> Scene:
         radius=material.radius if mapped is None else folder / mapped,
         anisotropy=max(0.0, material.anisotropy),
         specular=material.gloss.strength,
+        normal=None if material.normal is None else folder / material.normal,
+        roughness=NEUTRAL if material.roughness is None else folder / material.roughness,
         width=PREVIEW,
         height=PREVIEW,
         samples=32,

@@ -10,6 +10,8 @@ from cutis.errors import CutisError
 from cutis.textures import replacing
 
 Triple = tuple[float, float, float]
+NEUTRAL = 0.5
+"""Value of a roughness map at which the lobes are as rough as without it, else in proportion."""
 
 
 @dataclass(frozen=True)
@@ -52,9 +54,10 @@ class Material:
     `single_scattering` that of the medium's single-scattering albedo, for those that do not.
     `radius` is the mean free path in mm of red, green and blue, where `radius_texture` (in mm too)
     is given its mean. `anisotropy` is the g of the Henyey–Greenstein phase function that belongs to
-    both. `millimetres` is the length of one unit of the scene. File names are relative to the
-    folder of the material; of a UDIM set they hold <UDIM>. Raises CutisError for lengths that are
-    not positive and g outside −1 to 1.
+    both. `millimetres` is the length of one unit of the scene. `normal` is a tangent-space normal
+    map and `roughness` a grey map that the roughness of both lobes is in proportion to (see
+    `NEUTRAL`). File names are relative to the folder of the material; of a UDIM set they hold
+    <UDIM>. Raises CutisError for lengths that are not positive and g outside −1 to 1.
     """
 
     name: str
@@ -64,6 +67,8 @@ class Material:
     anisotropy: float
     millimetres: float
     radius_texture: str | None = None
+    normal: str | None = None
+    roughness: str | None = None
     gloss: Gloss = field(default_factory=Gloss)
     notes: Mapping[str, Any] = field(default_factory=dict)
     credits: Sequence[str] = ()
@@ -100,6 +105,16 @@ class Material:
             textures["radius"] = {
                 "file": self.radius_texture, "colour_space": "data", "unit": "mm",
                 "meaning": "mean free path per RGB band",
+            }  # fmt: skip
+        if self.normal is not None:
+            textures["normal"] = {
+                "file": self.normal, "colour_space": "data", "unit": "1",
+                "meaning": "tangent-space normal, 0 to 1 for -1 to 1",
+            }  # fmt: skip
+        if self.roughness is not None:
+            textures["roughness"] = {
+                "file": self.roughness, "colour_space": "data", "unit": "1",
+                "meaning": f"the lobes' roughness, as a share of {NEUTRAL:g}",
             }  # fmt: skip
         return {
             "name": self.name,
