@@ -22,6 +22,7 @@ from render_files import (
 )
 
 from cutis.errors import CutisError
+from cutis.render.blender import find_blender
 from cutis.render.cycles_process import render
 from cutis.render.scene import Scene
 
@@ -46,10 +47,12 @@ def picture(blender, tmp_path):
 
 
 def test_a_uniform_light_gives_back_a_lambertian_colour(picture):
+    """In the middle of samples exactly; 5.2 ends a few paths early and others count for them."""
     colour = (0.8, 0.5, 0.2)
     pixels = picture(Scene(base_colour=colour, mesh="patch", light="furnace", **PLAIN))
     assert pixels.shape == (48, 48, 3)
-    np.testing.assert_allclose(pixels, np.broadcast_to(colour, pixels.shape), atol=1e-3)
+    np.testing.assert_allclose(np.median(pixels, axis=(0, 1)), colour, atol=1e-4)
+    np.testing.assert_allclose(pixels.mean((0, 1)), colour, rtol=1e-3)
 
 
 def test_a_white_card_is_as_bright_under_every_light(picture):
@@ -122,6 +125,29 @@ def test_a_turn_brings_what_was_on_the_left_to_the_middle(picture, quarters):
     for turn, channel in ((50.0, 0), (-50.0, 1)):
         pixels = picture(Scene(base_colour=quarters, mesh="sphere", turn=turn, **PLAIN))
         assert np.argmax(pixels[12:20, 22:26].mean((0, 1))) == channel
+
+
+@pytest.mark.skipif(os.name == "nt", reason="the program made here is a shell script")
+def test_a_program_is_run_as_blender_is(blender, picture, tmp_path):
+    """What takes Blender's options and runs the script after --python gives the same picture."""
+    if not blender.module:
+        pytest.skip("the Blender here is a program already")
+    (tmp_path / "blender.py").write_text(
+        "import runpy, sys\n"
+        "script = sys.argv[sys.argv.index('--python') + 1]\n"
+        "assert '--' in sys.argv\n"
+        "runpy.run_path(script, run_name='__main__')\n"
+    )
+    program = tmp_path / "blender"
+    program.write_text(
+        '#!/bin/sh\ncase "$*" in *--version*) echo Blender 4.2.0; exit;; esac\n'
+        f'exec "{blender.executable}" "{tmp_path}/blender.py" "$@"\n'
+    )
+    program.chmod(0o755)
+    found = find_blender(program)
+    assert (found.module, found.version) == (False, (4, 2, 0))
+    render([(Scene(**QUICK), tmp_path / "out.exr")], found)
+    np.testing.assert_array_equal(read_exr(tmp_path / "out.exr"), picture(Scene(**QUICK)))
 
 
 def test_a_seed_names_a_picture(picture):

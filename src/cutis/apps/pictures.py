@@ -141,10 +141,12 @@ def export_to(
         found = None
     g = order.scene.anisotropy
     red, green, blue = (float(length) for length in mean_free_path(g))
+    everywhere = order.radius == "tissue"
+    radius = (red, green, blue) if everywhere else lambda maps: of_maps(maps, g)
     with made_folder(folder), order.opened() as skin:
         return export_material(
             skin, folder, skin.stem,
-            radius=(red, green, blue) if order.radius == "tissue" else lambda maps: of_maps(maps, g),
+            radius=radius,
             anisotropy=g, millimetres=order.scene.millimetres_per_unit or METRE,
             edits=order.edits, amount=order.amount, blender=found, progress=progress,
         ).files  # fmt: skip
@@ -159,37 +161,42 @@ class _Feeds:
 
     def scene(self, frame: "Frame") -> "Scene":
         """The scene of a frame, with its textures."""
+        from cutis.render.cycles import INDEX, METHOD, facing
+
         order = self._order
         if frame.edits not in self._written:
             self._written[frame.edits] = self._write((*order.edits, *frame.edits))
         colour, radius = self._written[frame.edits]
         scene = order.scene
-        return replace(scene, base_colour=colour, radius=radius, turn=scene.turn + frame.turn)
+        return replace(
+            scene, base_colour=colour, radius=radius, turn=scene.turn + frame.turn,
+            method=METHOD, subsurface_ior=INDEX, facing=facing(scene.anisotropy),
+        )  # fmt: skip
 
-    def _write(self, edits: "tuple[Edit, ...]") -> tuple[Path, Any]:
+    def _write(self, edits: "tuple[Edit, ...]") -> tuple[Path, Path]:
+        from cutis.render.cycles import base_colour, radius
         from cutis.render.feed import write_feed
         from cutis.render.medium import mean_free_path, of_maps
 
         number, order = len(self._written), self._order
-        colour = self._folder / f"colour{number}.exr"
-        write_feed(self._skin, colour, lambda rows: rows.albedo, edits, order.amount)
-        g = order.scene.anisotropy
-        if order.radius == "tissue":
-            red, green, blue = mean_free_path(g)
-            return colour, (float(red), float(green), float(blue))
-        if self._skin.maps is None:
+        g, everywhere = order.scene.anisotropy, mean_free_path()
+        if order.radius == "maps" and self._skin.maps is None:
             raise CutisError(
                 f"{order.skin.name} is a texture; --radius maps needs its maps (NAME.skin.exr), "
                 "which cutis estimate makes"
             )
-        lengths = self._folder / f"radius{number}.exr"
 
-        def of_rows(rows: "Rows") -> "NDArray[np.float32]":
-            assert rows.maps is not None
-            return of_maps(rows.maps, g)
+        def colour(rows: "Rows") -> "NDArray[np.floating]":
+            return base_colour(rows.albedo, g)
 
-        write_feed(self._skin, lengths, of_rows, edits, order.amount)
-        return colour, lengths
+        def lengths(rows: "Rows") -> "NDArray[np.float32]":
+            mapped = order.radius == "maps" and rows.maps is not None
+            return radius(colour(rows), of_maps(rows.maps) if mapped else everywhere)  # type: ignore[arg-type]
+
+        written = self._folder / f"colour{number}.exr", self._folder / f"radius{number}.exr"
+        for path, convert in zip(written, (colour, lengths), strict=True):
+            write_feed(self._skin, path, convert, edits, order.amount)
+        return written
 
 
 def _recipe(order: Order, skin: "Skin") -> dict[str, Any]:

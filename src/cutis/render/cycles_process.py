@@ -90,7 +90,8 @@ def _run(
             text = line.decode("utf-8", "replace").rstrip()
             event = _event(text)
             if event is None:
-                said.append(text)
+                if text:
+                    said.append(text)
                 continue
             kind, current = event["event"], event.get("picture", current)
             scene, path = pictures[current]
@@ -157,7 +158,7 @@ def _failure(status: int, number: int, count: int, said: Sequence[str]) -> Cutis
     if status < 0:
         with suppress(ValueError):
             how = signal.Signals(-status).name
-    last = next((line.strip() for line in reversed(said) if line.strip()), "nothing")
+    last = said[-1].strip() if said else "nothing"
     return CutisError(
         f"Blender ended at {where} without a picture ({how}); its last words: {last[:200]} "
         f"(all of them: {log})"

@@ -30,10 +30,11 @@ class Scene:
     What it is made of
         base_colour: what Cycles is given as the colour of the surface, 0–1, linear Rec.709;
         radius: what it is given as subsurface radius, mm, times `scale`; anisotropy: 0–0.99;
-        subsurface_ior: 1.01–3.8, used by `random_walk_skin` alone. `cutis.render.cycles` says
-        which of them bring back a wanted albedo. specular: share of the surface's reflection (two
-        GGX lobes at index 1.4), 0–1; roughness: their mean roughness, 0–1, or a file; normal: a
-        tangent-space normal map.
+        subsurface_ior: 1.01–3.8, used by `random_walk_skin` alone; facing: two cubics k and h, the
+        base colour c becomes c (1 + k(cosine of the view) h(c)). `cutis.render.cycles` says which
+        of them bring back a wanted albedo. specular: share of the surface's reflection, 0–1:
+        two GGX lobes at index 1.4 [walter2007], 85 % of 0.75 times the roughness and 15 % of 1.30
+        times [unreal2022]; roughness: 0–1, or a file; normal: a tangent-space normal map.
     What is seen
         mesh: one of `MESHES` or a file in one of `FORMATS`, +Y up, the face towards +Z in files
         of OBJ and glTF; millimetres_per_unit: of the file, None to take it for a head 240 mm high;
@@ -58,6 +59,7 @@ class Scene:
     anisotropy: float = 0.0
     method: str = "random_walk"
     subsurface_ior: float = 1.4
+    facing: tuple[tuple[float, ...], tuple[float, ...]] | None = None
     specular: float = 1.0
     roughness: float | Path = 0.5
     normal: Path | None = None
@@ -133,7 +135,7 @@ class Scene:
             if isinstance(value, Path):
                 job[field.name] = os.path.abspath(value)
             elif isinstance(value, tuple):
-                job[field.name] = [float(v) for v in value]
+                job[field.name] = list(value)
         return job
 
     def _tilt(self) -> float:

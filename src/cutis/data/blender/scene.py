@@ -20,6 +20,7 @@ What happens is told on standard output, one line of JSON after the word CUTIS e
 An error ends the program with status 1. The scene is in metres, +Z up, the face towards −Y.
 """
 
+import ctypes
 import json
 import math
 import os
@@ -40,12 +41,13 @@ MILLIMETRE = 1e-3  # metres
 LENS, SENSOR = 85.0, 36.0  # mm; the usual focal length of portraits
 MARGIN = 0.06  # share of the picture's half side that stays free around the mesh
 HEAD_HEIGHT = 240.0  # mm, vertex to chin and some neck; a mesh of unknown scale is taken for that
-MOST_VERTICES = 20_000_000
+MOST_VERTICES, MOST_BYTES = 20_000_000, 4 << 30
 LINEAR = "Linear Rec.709"
 
-# The two lobes of the surface: roughness as a factor of the scene's, and share.
+# The two lobes of the surface: roughness as a factor of the scene's, and share. Factors and shares
+# are those that the Unreal Engine has for skin by default; the roughness they multiply is chosen.
 LOBES = ((0.75, 0.85), (1.30, 0.15))
-SKIN_IOR = 1.4
+SKIN_IOR = 1.4  # as the tissue's
 
 # Brings a white card that faces the camera to a luminance of WHITE_CARD (tests measure it).
 WHITE_CARD = 0.8
@@ -57,7 +59,8 @@ class Problem(Exception):
 
 
 def tell(**event):
-    print("CUTIS " + json.dumps(event), flush=True)
+    """A line of its own, whatever half a line of Blender's may still be in the pipe."""
+    os.write(1, f"\nCUTIS {json.dumps(event)}\n".encode())
 
 
 # Meshes ----------------------------------------------------------------------------------------
@@ -65,6 +68,11 @@ def tell(**event):
 
 def import_mesh(path):
     """Meshes of a file in one space: a list of bpy meshes with transformations and modifiers in."""
+    size = os.path.getsize(path)
+    if not size:
+        return []
+    if size > MOST_BYTES:
+        raise Problem(f"the mesh {path} has {size / 2**30:.1f} GiB; simplify it to 4 GiB or less")
     before = set(bpy.data.objects)
     kind = os.path.splitext(path)[1].lower()
     if kind == ".obj":  # Blender reads 0 there
@@ -369,6 +377,25 @@ def new_material(name):
     return material, Nodes(material.node_tree)
 
 
+def faced(nodes, colour, of_view, of_colour):
+    """The colour c as c (1 + k h), k a cubic of the cosine of the view, h one of c."""
+    if isinstance(colour, list):
+        colour = nodes.add("ShaderNodeCombineXYZ", dict(enumerate(colour))).outputs[0]
+    place = nodes.add("ShaderNodeNewGeometry").outputs
+    view = {0: place["Normal"], 1: place["Incoming"]}
+    cosine = nodes.add("ShaderNodeVectorMath", view, operation="DOT_PRODUCT").outputs["Value"]
+    cosine = nodes.add("ShaderNodeMath", {0: cosine}, operation="ABSOLUTE").outputs[0]
+    k, h = of_view[3], [of_colour[3]] * 3
+    for a, b in zip(of_view[2::-1], of_colour[2::-1], strict=True):
+        k = nodes.add("ShaderNodeMath", {0: k, 1: cosine, 2: a}, operation="MULTIPLY_ADD")
+        k = k.outputs[0]
+        step = {0: h, 1: colour, 2: [b] * 3}
+        h = nodes.add("ShaderNodeVectorMath", step, operation="MULTIPLY_ADD").outputs[0]
+    change = nodes.add("ShaderNodeVectorMath", {0: h, "Scale": k}, operation="SCALE").outputs[0]
+    changed = {0: colour, 1: change, 2: colour}
+    return nodes.add("ShaderNodeVectorMath", changed, operation="MULTIPLY_ADD").outputs[0]
+
+
 def skin_material(picture, textures):
     """Random-walk subsurface below two lobes of GGX."""
     material, nodes = new_material("skin")
@@ -381,6 +408,8 @@ def skin_material(picture, textures):
         return nodes.add("ShaderNodeTexImage", image=image, extension="EXTEND").outputs["Color"]
 
     colour = source(picture["base_colour"], LINEAR)
+    if picture["facing"]:
+        colour = faced(nodes, colour, *picture["facing"])
     inputs = {
         "Base Color": colour if not isinstance(colour, list) else [*colour, 1.0],
         "IOR": SKIN_IOR,
@@ -672,6 +701,8 @@ class Progress:
 
     def __init__(self):
         self.parent = os.getppid()
+        if sys.platform == "linux":  # at once; elsewhere it has to wait for a status line
+            ctypes.CDLL(None).prctl(1, 9)  # PR_SET_PDEATHSIG, SIGKILL
         self.picture, self.sample = 0, -1
         bpy.app.handlers.render_stats.append(self.heard)
 
