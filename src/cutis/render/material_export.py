@@ -45,20 +45,25 @@ def export_material(
     """Writes the material of a skin, with edits, into a folder that exists.
 
     NAME.albedo.exr, NAME.single_scattering.exr, NAME.radius.exr (if `radius` varies; see
-    `write_textures`), NAME.material.json, NAME.mtlx and, where `blender` is given, NAME.blend.
+    `write_textures`), NAME.material.json, NAME.mtlx and, where `blender` is given, NAME.blend with
+    textures for Cycles.
     `millimetres` is the length of one unit of the scene. `normal` and `roughness` are maps of
     `Material`; copies of them, NAME.normal.EXT and NAME.roughness.EXT, go with the others. Raises
     CutisError as the writers do.
     """
-    textures = write_textures(skin, folder, name, radius, anisotropy, edits, amount, progress)
+    textures = write_textures(
+        skin, folder, name, radius, anisotropy, edits, amount, blender is not None, progress
+    )
     normal_name = _copied(normal, folder, f"{name}.normal")
     roughness_name = _copied(roughness, folder, f"{name}.roughness")
     material = Material(
         name=name,
-        albedo=textures.albedo,
-        single_scattering=textures.single_scattering,
+        albedo=textures.files["albedo"],
+        single_scattering=textures.files["single_scattering"],
         radius=textures.radius,
-        radius_texture=textures.radius_texture,
+        radius_texture=textures.files.get("radius"),
+        cycles_colour=textures.files.get("cycles_colour"),
+        cycles_radius=textures.files.get("cycles_radius"),
         anisotropy=anisotropy,
         millimetres=millimetres,
         normal=normal_name,
@@ -76,10 +81,7 @@ def export_material(
     description, document = folder / f"{name}.material.json", folder / f"{name}.mtlx"
     write_description(material, description)
     write_materialx(material, document)
-    names = [
-        *(textures.albedo, textures.single_scattering, textures.radius_texture),
-        *(normal_name, roughness_name),
-    ]
+    names = [*textures.files.values(), normal_name, roughness_name]
     files = [*(folder / file for file in names if file), description, document]
     if blender is not None:
         files.append(folder / f"{name}.blend")

@@ -171,7 +171,8 @@ def _textures(graph: ElementTree.Element, material: Material) -> None:
         return
     image = _image(graph, "roughness", "float", material.roughness)
     (main, _), (coat, _) = material.gloss.lobes
-    # the model's rule below a coat is linear in both roughnesses at once, so one factor undoes it
+    # below a coat the model is linear in both roughnesses at once (until it cuts off at 1), so that
+    # one factor undoes it
     _scaled(graph, "open_pbr_roughness", image, _below_coat(material.gloss)[1] / NEUTRAL)
     _scaled(graph, "standard_roughness", image, main / NEUTRAL)
     _scaled(graph, "coat_roughness", image, coat / NEUTRAL)
