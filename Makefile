@@ -60,5 +60,5 @@ $(BLENDER): src/cutis/data/blender/constraints.txt | $(CORE)
 
 $(FULL): pyproject.toml constraints.txt
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(INSTALL) -e '.[cluster,dev,docs,materialx,onnx,train]'
+	$(INSTALL) -e '.[cluster,dev,docs,materialx,mitsuba,onnx,train]'
 	@touch $(CORE) $@

@@ -1,0 +1,107 @@
+"""What Cycles is fed, by what its walk returns."""
+
+import numpy as np
+import pytest
+from scipy.stats import norm
+
+from cutis.albedo import albedo_space
+from cutis.errors import CutisError
+from cutis.render.cycles import (
+    INDEX,
+    METHOD,
+    base_colour,
+    facing,
+    radius,
+    seen_albedo,
+    walked_albedo,
+)
+from cutis.render.cycles_process import render
+from cutis.render.inversion import diffuse_albedo
+from cutis.render.medium import mean_free_path
+from cutis.render.published_fits import wrenninge2017
+from cutis.render.scene import Scene
+from cutis.textures import read_texture
+
+LEVEL = 1e-3
+"""Chance that a test over all tones fails by noise alone; fixed before the first run."""
+
+
+@pytest.mark.parametrize("g", [0.0, 0.5, 0.8])
+def test_colours_become_the_single_scattering_albedo_of_the_walk(g):
+    albedo = np.linspace(0.003, 0.9, 200)
+    alpha = wrenninge2017(base_colour(albedo, g), g)  # what Cycles makes of it
+    np.testing.assert_allclose(walked_albedo(alpha, g), albedo, rtol=2e-3)
+
+
+def test_the_walk_is_exact_where_cycles_has_no_habits():
+    alpha = np.array([0.25, 0.5, 0.9, 0.97])
+    np.testing.assert_allclose(walked_albedo(alpha), diffuse_albedo(alpha), rtol=1e-4)
+    # below 0.2 it is proportional, and of white 8 % walks too long
+    assert walked_albedo(0.1) == pytest.approx(0.5 * float(diffuse_albedo(0.2)))
+    assert float(walked_albedo(1.0)) == pytest.approx(1 - 4 / np.sqrt(3 * np.pi * 255.5), abs=1e-4)
+
+
+def test_radii_undo_the_dipole():
+    """12 bisections of 0.5 α′ (1 + exp(−4 A s / 3)) exp(−s) = c, s = √(3 (1 − α′))."""
+    colour = np.linspace(0.01, 0.7, 50).astype(np.float32)
+    scale = 1 / radius(colour, 1.0)
+    s = np.sqrt(3 * (1 - (1 - scale.astype(float) ** 2 / 3)))
+    inverse = 1 / INDEX
+    fresnel = inverse * (-1.44 * inverse + 0.71) + 0.668 + 0.0636 * INDEX
+    depth = 4 / 3 * (1 + fresnel) / (1 - fresnel)
+    reduced = 1 - s**2 / 3
+    back = 0.5 * reduced * (1 + np.exp(-depth * s)) * np.exp(-s)
+    np.testing.assert_allclose(back, colour, atol=6e-3)
+    np.testing.assert_allclose(radius(colour, 2.0), 2 * radius(colour, 1.0), rtol=1e-6)
+
+
+def test_facing_takes_back_what_depends_on_the_view():
+    """At g = 0, for albedos of skin and views up to 84°, by the solver."""
+    k, h = facing()
+    cosines, albedos = np.linspace(0.1, 1, 10), np.array([0.03, 0.1, 0.3, 0.5, 0.7])
+    alpha, seen = seen_albedo(cosines)
+    for cosine, row in zip(cosines, seen, strict=True):
+        colour = base_colour(albedos)
+        there = np.polynomial.polynomial.polyval(cosine, k)
+        fed = colour * (1 + there * np.polynomial.polynomial.polyval(colour, h))
+        found = np.interp(wrenninge2017(fed), alpha, row)
+        np.testing.assert_allclose(found, albedos, rtol=0.012 if cosine > 0.15 else 0.03)
+
+
+def test_single_precision_stays():
+    assert base_colour(np.array([0.2, 0.5], np.float32)).dtype == np.float32
+
+
+def test_values_out_of_range_are_refused():
+    for bad in (-0.1, 1.1, np.nan):
+        with pytest.raises(CutisError, match="0 to 1"):
+            base_colour([0.5, bad])
+    with pytest.raises(CutisError, match="anisotropy"):
+        base_colour(0.5, -0.2)
+    with pytest.raises(CutisError, match="anisotropy"):
+        facing(0.95)
+
+
+@pytest.mark.slow
+def test_patches_of_skin_return_the_albedo_asked_for(blender, tmp_path):
+    """24 skins from very light to very dark, square on: within 1 %, noise apart."""
+    melanin = (0.003, 0.01, 0.02, 0.04, 0.08, 0.15, 0.3, 0.6)
+    skins = [(m, b, 100.0, 0.7, 0.75) for m in melanin for b in (0.002, 0.02, 0.08)]
+    tones = albedo_space().rgb(np.array(skins))
+    pictures = []
+    for number, albedo in enumerate(tones):
+        colour = base_colour(albedo)
+        lengths = radius(colour, mean_free_path())
+        scene = Scene(
+            mesh="patch", light="furnace", specular=0.0, denoise=False, width=40, height=40,
+            samples=48, method=METHOD, subsurface_ior=INDEX, facing=facing(), device="cpu",
+            base_colour=tuple(map(float, colour)), radius=tuple(map(float, lengths)),
+        )  # fmt: skip
+        pictures.append((scene, tmp_path / f"{number}.exr"))
+    render(pictures, blender)
+    bound = norm.isf(LEVEL / (2 * tones.size))
+    for (_, path), albedo in zip(pictures, tones, strict=True):
+        pixels = read_texture(path).linear().reshape(-1, 3).astype(float)
+        error = pixels.std(axis=0, ddof=1) / np.sqrt(len(pixels))
+        assert (error < 0.008 * albedo).all()
+        assert (np.abs(pixels.mean(axis=0) - albedo) < 0.01 * albedo + bound * error).all(), albedo
