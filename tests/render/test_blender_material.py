@@ -15,11 +15,13 @@ from cutis.render.blender import quiet_environment
 from cutis.render.blender_material import preview_scene, write_blender
 from cutis.render.cycles_process import render
 from cutis.render.material import Gloss, Material
+from cutis.render.material_textures import write_textures
+from cutis.render.skin import Skin
 from cutis.textures import read_channels, write_channels
 
 pytestmark = pytest.mark.slow
 
-SAME = 0.003
+SAME = 0.012
 """Mean difference of two pictures of the same, as a share of their mean."""
 
 OPEN = """
@@ -51,14 +53,35 @@ bpy.ops.wm.read_factory_settings(use_empty=True)
 with bpy.data.libraries.load(blend, link=False, assets_only=True) as (there, here):
     here.materials = list(there.materials)
 (material,) = here.materials
-image = next(n.image for n in material.node_tree.nodes if n.type == "TEX_IMAGE")
+images = {n.image.name: n.image for n in material.node_tree.nodes if n.type == "TEX_IMAGE"}
 print("TOLD " + json.dumps({
     "name": material.name,
-    "size": list(image.size),
-    "space": image.colorspace_settings.name,
-    "texel": list(image.pixels[:3]),
+    "spaces": {k: [list(i.size), i.colorspace_settings.name] for k, i in images.items()},
+    "texel": list(images["face.cycles_colour.exr"].pixels[:3]),
     "others": len(bpy.data.objects),
 }))
+"""
+
+
+FURNACE = """
+import bpy, sys
+blend, out = sys.argv[-2:]
+bpy.ops.wm.open_mainfile(filepath=blend)
+scene = bpy.context.scene
+for thing in list(bpy.data.objects):
+    if thing.type == "LIGHT" or thing.name == "wall":
+        bpy.data.objects.remove(thing)
+background = next(n for n in scene.world.node_tree.nodes if n.type == "BACKGROUND")
+for link in list(scene.world.node_tree.links):
+    if link.to_node == background:
+        scene.world.node_tree.links.remove(link)
+background.inputs["Color"].default_value = (1, 1, 1, 1)
+background.inputs["Strength"].default_value = 1
+scene.cycles.film_exposure, scene.cycles.use_denoising, scene.cycles.samples = 1, False, 128
+scene.render.resolution_x = scene.render.resolution_y = 48
+scene.render.filepath = out
+bpy.ops.render.render(write_still=True)
+print("TOLD {}")
 """
 
 
@@ -75,13 +98,21 @@ def ask(blender, folder, script, *arguments):
     return json.loads(told[0])
 
 
-def skin(**changes):
+ALBEDO = (0.62, 0.35, 0.2)
+
+
+def exported(folder, albedo=None, anisotropy=0.0, radius=(60.0, 30.0, 20.0), **changes):
+    """A material with its textures; lengths are long, so that a wrong unit would show."""
+    y, x = np.mgrid[:16, :32] / 32
+    varying = {"R": 0.5 + 0.3 * x, "G": 0.35 + 0.2 * y, "B": 0.3 - 0.1 * x}
+    write_channels(folder / "given.exr", albedo or varying)
+    with Skin(folder / "given.exr") as skin:
+        found = write_textures(skin, folder, "face", radius, anisotropy, for_cycles=True)
     given = {
         "name": "face",
-        "albedo": "face.albedo.exr",
-        "single_scattering": "face.single_scattering.exr",
-        "radius": (60.0, 30.0, 20.0),  # mm, on a ball of 240 mm: a wrong unit would show
-        "anisotropy": 0.0,
+        **found.files,
+        "radius": found.radius,
+        "anisotropy": anisotropy,
         "millimetres": 100.0,
         "credits": ("by nobody",),
         **changes,
@@ -89,33 +120,37 @@ def skin(**changes):
     return Material(**given)
 
 
-@pytest.fixture
-def folder(tmp_path):
-    """Textures of a material whose colour varies."""
-    y, x = np.mgrid[:16, :32] / 32
-    write_channels(
-        tmp_path / "face.albedo.exr", {"R": 0.5 + 0.3 * x, "G": 0.35 + 0.2 * y, "B": 0.3 - 0.1 * x}
-    )
-    radii = {"R": 60 - 20 * x, "G": 20 + 20 * y, "B": 20 + 0 * x}
-    write_channels(tmp_path / "face.radius.exr", radii)
-    return tmp_path
+def pixels(path):
+    channels = read_channels(path)[0]
+    return np.stack([channels[c] for c in "RGB"], axis=-1)
 
 
 @pytest.mark.parametrize(
-    "changes", [{}, {"radius_texture": "face.radius.exr", "millimetres": 1000.0}]
+    "changes",
+    [
+        {},
+        {"anisotropy": 0.5, "millimetres": 1000.0},
+        {"normal": "face.normal.exr", "roughness": "face.roughness.exr", "millimetres": 1000.0},
+    ],
+    ids=["decimetres", "metres", "maps"],
 )
-def test_file_opens_as_the_picture_that_cutis_renders(blender, folder, tmp_path_factory, changes):
+def test_file_opens_as_the_picture_that_cutis_renders(blender, tmp_path, changes):
     """Moved with its textures, in a fresh process: the same numbers, whatever the units."""
-    material = skin(**changes)
+    folder = tmp_path / "here"
+    folder.mkdir()
+    flat = np.full((4, 4), 0.5)
+    write_channels(folder / "face.normal.exr", {"R": flat + 0.2, "G": flat, "B": flat + 0.4})
+    write_channels(folder / "face.roughness.exr", dict.fromkeys("RGB", flat - 0.2))
+    material = exported(folder, **changes)
     write_blender(material, folder / "face.blend", blender)
     ours = folder / "ours.exr"
     render([(replace(preview_scene(material, folder), width=48, height=48), ours)], blender)
 
-    moved = tmp_path_factory.mktemp("elsewhere") / "moved"
+    moved = tmp_path / "there"
     folder.rename(moved)
     told = ask(blender, moved, OPEN, moved / "face.blend", moved / "theirs.exr")
-    names = [n for n in (material.albedo, material.radius_texture) if n]
-    assert told["images"] == [f"//{name}" for name in names]
+    names = [material.cycles_colour, material.cycles_radius, material.normal, material.roughness]
+    assert told["images"] == sorted(f"//{name}" for name in names if name)
     assert told["asset"]
     assert told["copyright"] == "by nobody"
     assert told["unit"] == pytest.approx(1 / material.millimetres)
@@ -123,45 +158,62 @@ def test_file_opens_as_the_picture_that_cutis_renders(blender, folder, tmp_path_
     assert told["places"] == told["nodes"]  # none on top of another
     assert told["preview"] > 0
 
-    pictures = [read_channels(moved / name)[0] for name in ("ours.exr", "theirs.exr")]
-    a, b = (np.stack([picture[c] for c in "RGB"], axis=-1) for picture in pictures)
+    a, b = pixels(moved / "ours.exr"), pixels(moved / "theirs.exr")
     assert a.mean() > 0.1
-    # At another scale rays round differently, and a few take another way.
+    # At another scale rays round differently, and some take another way.
     assert b.mean(axis=(0, 1)) == pytest.approx(a.mean(axis=(0, 1)), rel=1e-3)
     assert np.abs(a - b).mean() < SAME * a.mean()
+    if material.millimetres == 1000:  # the unit that pictures are made in
+        np.testing.assert_allclose(a, b, rtol=1e-5, atol=1e-6)
 
 
-def test_material_is_appended_with_its_texture_and_nothing_else(blender, folder):
-    write_blender(skin(), folder / "face.blend", blender)
-    told = ask(blender, folder, APPEND, folder / "face.blend")
+def test_material_is_appended_with_its_textures_and_nothing_else(blender, tmp_path):
+    material = exported(tmp_path)
+    write_blender(material, tmp_path / "face.blend", blender)
+    told = ask(blender, tmp_path, APPEND, tmp_path / "face.blend")
     assert told["name"] == "face"
-    assert told["size"] == [32, 16]
-    assert told["space"] == "Linear Rec.709"
-    assert told["texel"] == pytest.approx([0.5, 0.35 + 0.2 * 15 / 32, 0.3], rel=1e-5)  # lower left
+    assert told["spaces"] == {
+        material.cycles_colour: [[32, 16], "Linear Rec.709"],
+        material.cycles_radius: [[32, 16], "Non-Color"],
+    }
+    stored = pixels(tmp_path / material.cycles_colour)[-1, 0]  # Blender's first is lower left
+    assert told["texel"] == pytest.approx(stored, rel=1e-5)
     assert told["others"] == 0
 
 
-def test_a_wrong_unit_would_be_seen(blender, folder):
+def test_its_walk_returns_the_albedo(blender, tmp_path):
+    """Below white light from everywhere, without gloss, the ball has the colour asked for."""
+    flat = {c: np.full((4, 4), value) for c, value in zip("RGB", ALBEDO, strict=True)}
+    material = exported(tmp_path, flat, radius=(0.4, 0.3, 0.2), gloss=Gloss(strength=0.0))
+    write_blender(material, tmp_path / "face.blend", blender)
+    ask(blender, tmp_path, FURNACE, tmp_path / "face.blend", tmp_path / "lit.exr")
+    middle = pixels(tmp_path / "lit.exr")[16:32, 16:32].reshape(-1, 3)
+    error = middle.std(axis=0) / np.sqrt(len(middle))
+    assert (np.abs(middle.mean(axis=0) - ALBEDO) < 0.01 * np.array(ALBEDO) + 4 * error).all()
+    assert (error < 0.005 * np.array(ALBEDO)).all()  # or it would say little
+
+
+def test_a_wrong_unit_would_be_seen(blender, tmp_path):
     """Ten times less scattering changes pictures by more than what the comparison allows."""
     pictures = []
     for radius in ((60.0, 30.0, 20.0), (6.0, 3.0, 2.0)):
-        scene = preview_scene(skin(radius=radius), folder)
-        path = folder / f"{radius[0]}.exr"
+        scene = preview_scene(exported(tmp_path, radius=radius), tmp_path)
+        path = tmp_path / f"{radius[0]}.exr"
         render([(replace(scene, width=48, height=48), path)], blender)
-        channels = read_channels(path)[0]
-        pictures.append(np.stack([channels[c] for c in "RGB"], axis=-1))
+        pictures.append(pixels(path))
     a, b = pictures
     assert np.abs(a - b).mean() > 5 * SAME * a.mean()
 
 
-def test_missing_texture_is_one_clear_line(blender, folder):
-    (folder / "face.albedo.exr").write_bytes(b"not a picture")
-    with pytest.raises(CutisError, match=r"face\.albedo\.exr cannot be read"):
-        write_blender(skin(), folder / "face.blend", blender)
-    assert not (folder / "face.blend").exists()
+def test_missing_texture_is_one_clear_line(blender, tmp_path):
+    material = exported(tmp_path)
+    (tmp_path / material.cycles_colour).write_bytes(b"not a picture")
+    with pytest.raises(CutisError, match=r"face\.cycles_colour\.exr cannot be read"):
+        write_blender(material, tmp_path / "face.blend", blender)
+    assert not (tmp_path / "face.blend").exists()
 
 
-def test_strength_and_backward_scattering_reach_the_scene(folder):
-    scene = preview_scene(skin(gloss=Gloss(strength=0.4), anisotropy=-0.3), folder)
-    assert scene.specular == 0.4
-    assert scene.anisotropy == 0.0  # Cycles has no backward scattering
+def test_material_without_textures_for_cycles_is_refused(tmp_path):
+    material = replace(exported(tmp_path), cycles_colour=None)
+    with pytest.raises(CutisError, match="no textures for Cycles"):
+        preview_scene(material, tmp_path)

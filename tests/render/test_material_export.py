@@ -66,13 +66,30 @@ def test_folder_that_is_not_there_is_one_clear_line(maps, tmp_path):
         export_material(skin, tmp_path / "none", "tan", **SETTINGS)
 
 
+def test_maps_of_normals_and_roughness_go_with_it(maps, tmp_path, write_face):
+    given = write_face(tmp_path, "png8", name="bumps")
+    folder = tmp_path / "out"
+    folder.mkdir()
+    with Skin(maps) as skin:
+        done = export_material(skin, folder, "tan", normal=given, roughness=given, **SETTINGS)
+    for kind in ("normal", "roughness"):
+        assert (folder / f"tan.{kind}.png").read_bytes() == given.read_bytes()
+        assert folder / f"tan.{kind}.png" in done.files
+    with Skin(maps) as skin, pytest.raises(CutisError, match=r"none\.png: there is no such file"):
+        export_material(skin, folder, "tan", normal=tmp_path / "none.png", **SETTINGS)
+
+
 @pytest.mark.slow
 def test_blender_file_is_among_them(maps, tmp_path):
     try:
         blender = find_blender()
     except CutisError as error:
         pytest.skip(str(error))
+    folder = tmp_path / "out"
+    folder.mkdir()
     with Skin(maps) as skin:
-        done = export_material(skin, tmp_path, "tan", blender=blender, **SETTINGS)
-    assert done.files[-1] == tmp_path / "tan.blend"
+        done = export_material(skin, folder, "tan", blender=blender, **SETTINGS)
+    assert sorted(done.files) == sorted(folder.iterdir())
+    assert done.files[-1] == folder / "tan.blend"
     assert done.files[-1].stat().st_size > 10_000
+    assert folder / "tan.cycles_colour.exr" in done.files

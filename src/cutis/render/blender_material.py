@@ -1,7 +1,8 @@
 """A skin material as a Blender file: an asset to append, which also opens as a scene.
 
-Blender writes it in a process of its own, by the script that renders pictures. The file names its
-textures relative to itself, so that a folder with both can be moved.
+Blender writes it in a process of its own, by the script that renders pictures, and Cycles is fed as
+it is for pictures, so that it returns the albedo (`render.cycles`). The file names its textures
+relative to itself, so that a folder with both can be moved.
 """
 
 import json
@@ -13,7 +14,8 @@ from pathlib import Path
 
 from cutis.errors import CutisError
 from cutis.render.blender import Blender, find_blender, quiet_environment
-from cutis.render.material import Material
+from cutis.render.cycles import INDEX, METHOD, facing
+from cutis.render.material import NEUTRAL, Material
 from cutis.render.scene import Scene
 from cutis.textures import replacing
 
@@ -47,12 +49,18 @@ def write_blender(material: Material, path: Path, blender: Blender | None = None
 
 def preview_scene(material: Material, folder: Path) -> Scene:
     """The scene that the file opens as, in the units of the material."""
-    mapped = material.radius_texture
+    if material.cycles_colour is None or material.cycles_radius is None:
+        raise CutisError(f"the material {material.name} has no textures for Cycles; export it anew")
     return Scene(
-        base_colour=folder / material.albedo,
-        radius=material.radius if mapped is None else folder / mapped,
-        anisotropy=max(0.0, material.anisotropy),
+        base_colour=folder / material.cycles_colour,
+        radius=folder / material.cycles_radius,
+        anisotropy=material.anisotropy,
+        method=METHOD,
+        subsurface_ior=INDEX,
+        facing=facing(material.anisotropy),
         specular=material.gloss.strength,
+        normal=None if material.normal is None else folder / material.normal,
+        roughness=NEUTRAL if material.roughness is None else folder / material.roughness,
         width=PREVIEW,
         height=PREVIEW,
         samples=32,

@@ -10,6 +10,9 @@ from cutis.errors import CutisError
 from cutis.textures import replacing
 
 Triple = tuple[float, float, float]
+LINEAR = "linear Rec.709 (scene-linear, Rec.709 primaries, D65)"
+NEUTRAL = 0.5
+"""Value of a roughness map at which the lobes are as rough as without it, else in proportion."""
 
 
 @dataclass(frozen=True)
@@ -52,9 +55,11 @@ class Material:
     `single_scattering` that of the medium's single-scattering albedo, for those that do not.
     `radius` is the mean free path in mm of red, green and blue, where `radius_texture` (in mm too)
     is given its mean. `anisotropy` is the g of the Henyey–Greenstein phase function that belongs to
-    both. `millimetres` is the length of one unit of the scene. File names are relative to the
-    folder of the material; of a UDIM set they hold <UDIM>. Raises CutisError for lengths that are
-    not positive and g outside −1 to 1.
+    both. `cycles_colour` and `cycles_radius` (mm) are textures for Cycles alone, with which its
+    walk returns the albedo. `millimetres` is the length of one unit of the scene. `normal` is a
+    tangent-space normal map and `roughness` a grey map that the roughness of both lobes is in
+    proportion to (see `NEUTRAL`). File names are relative to the folder of the material; of a UDIM
+    set they hold <UDIM>. Raises CutisError for lengths that are not positive and g outside −1 to 1.
     """
 
     name: str
@@ -64,6 +69,10 @@ class Material:
     anisotropy: float
     millimetres: float
     radius_texture: str | None = None
+    cycles_colour: str | None = None
+    cycles_radius: str | None = None
+    normal: str | None = None
+    roughness: str | None = None
     gloss: Gloss = field(default_factory=Gloss)
     notes: Mapping[str, Any] = field(default_factory=dict)
     credits: Sequence[str] = ()
@@ -84,23 +93,25 @@ class Material:
 
     def description(self) -> dict[str, Any]:
         """What the sidecar says, ready for JSON."""
-        linear = "linear Rec.709 (scene-linear, Rec.709 primaries, D65)"
         textures = {
-            "albedo": {
-                "file": self.albedo, "colour_space": linear, "unit": "1",
-                "meaning": "diffuse albedo; for subsurface colour inputs, which renderers invert",
-            },
-            "single_scattering": {
-                "file": self.single_scattering, "colour_space": "data", "unit": "1",
-                "meaning": "single-scattering albedo of the medium per RGB band; instead of the "
-                "albedo where a medium is given by its coefficients",
-            },
+            kind: {"file": file, "colour_space": space, "unit": unit, "meaning": meaning}
+            for kind, file, space, unit, meaning in (
+                ("albedo", self.albedo, LINEAR, "1", "diffuse albedo; for subsurface colour "
+                 "inputs, which renderers invert"),
+                ("single_scattering", self.single_scattering, "data", "1", "single-scattering "
+                 "albedo of the medium per RGB band; instead of the albedo where a medium is given "
+                 "by its coefficients"),
+                ("radius", self.radius_texture, "data", "mm", "mean free path per RGB band"),
+                ("cycles_colour", self.cycles_colour, LINEAR, "1", "base colour for Blender's "
+                 "Random Walk (Skin), with which it returns the albedo"),
+                ("cycles_radius", self.cycles_radius, "data", "mm", "subsurface radius for that "
+                 "base colour"),
+                ("normal", self.normal, "data", "1", "tangent-space normal, 0 to 1 for -1 to 1"),
+                ("roughness", self.roughness, "data", "1", "roughness of both lobes, as without "
+                 f"the map where it is {NEUTRAL:g}, else in proportion"),
+            )
+            if file is not None
         }  # fmt: skip
-        if self.radius_texture is not None:
-            textures["radius"] = {
-                "file": self.radius_texture, "colour_space": "data", "unit": "mm",
-                "meaning": "mean free path per RGB band",
-            }  # fmt: skip
         return {
             "name": self.name,
             "textures": textures,

@@ -7,7 +7,7 @@ material and no texture.
 """
 
 import contextlib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from cutis.colour import LINEAR
 from cutis.errors import CutisError
 from cutis.maps import Edit, SkinMaps
+from cutis.render import cycles
 from cutis.render.inversion import single_scattering_albedo
 from cutis.render.material import Triple
 from cutis.render.skin import Rows, Skin
@@ -32,11 +33,9 @@ Writer = Callable[[dict[str, NDArray[np.generic]]], None]
 
 @dataclass(frozen=True)
 class Textures:
-    """File names, and the mean free path in mm: the same for all texels, or the mean inside."""
+    """File names by kind (see `KINDS`); mean free path in mm: the same everywhere, or the mean."""
 
-    albedo: str
-    single_scattering: str
-    radius_texture: str | None
+    files: Mapping[str, str]
     radius: Triple
 
 
@@ -48,14 +47,17 @@ def write_textures(
     anisotropy: float,
     edits: Sequence[Edit] = (),
     amount: float = 1.0,
+    for_cycles: bool = False,
     progress: Progress | None = None,
 ) -> Textures:
     """Writes NAME.albedo.exr, NAME.single_scattering.exr and, if `radius` varies, NAME.radius.exr.
 
     `anisotropy` is the g of the medium that single-scattering albedo and radius are for; its
-    boundary is index-matched, as that of the albedo is. All files appear when all are written, or
-    none. Raises CutisError for a varying radius of a texture without maps, radii that are not
-    positive, and files that cannot be read or written.
+    boundary is index-matched, as that of the albedo is. `for_cycles` adds NAME.cycles_colour.exr
+    and NAME.cycles_radius.exr, with which Cycles returns the albedo (`render.cycles`). All files
+    appear when all are written, or none. Raises CutisError for a varying radius of a texture
+    without maps, radii that are not positive, anisotropies out of range, and files that cannot be
+    read or written.
     """
     if skin.maps is None and callable(radius):
         raise CutisError(
@@ -63,30 +65,57 @@ def write_textures(
             "(NAME.skin.exr), which cutis estimate makes"
         )
     mean = _mean(skin, radius, edits, amount) if callable(radius) else radius
+    makers = _makers(radius, mean, anisotropy, for_cycles)
     total = skin.shape[0] * skin.shape[1]
     with contextlib.ExitStack() as stack:
-        writers = [
-            stack.enter_context(_texture(folder / f"{name}.{kind}.exr", skin.shape, *settings))
-            for kind, *settings in KINDS[: 3 if callable(radius) else 2]
-        ]
+        writers = {
+            kind: stack.enter_context(
+                _texture(folder / f"{name}.{kind}.exr", skin.shape, *KINDS[kind])
+            )
+            for kind in makers
+        }
         for rows in skin.bands():
             part = skin.rows(rows, edits, amount)
-            writers[0](_channels(part.albedo))
-            writers[1](_channels(single_scattering_albedo(part.albedo, anisotropy)))
-            if callable(radius):
-                writers[2](_channels(_lengths(part, radius, mean)))
+            for kind, make in makers.items():
+                writers[kind](_channels(make(part)))
             if progress is not None:
                 progress(min(rows.stop, skin.shape[0]) * skin.shape[1], total, "writing textures")
-    files = [f"{name}.{kind}.exr" for kind, *_ in KINDS]
-    return Textures(files[0], files[1], files[2] if callable(radius) else None, mean)
+    return Textures({kind: f"{name}.{kind}.exr" for kind in makers}, mean)
 
 
-KINDS = (
-    ("albedo", "half", "diffuse albedo, linear Rec.709", "lin_rec709_scene"),
-    ("single_scattering", "float", "single-scattering albedo of each RGB band", "data"),
-    ("radius", "half", "mean free path of each RGB band [mm]", "data"),
-)
-"""Of each texture: its name, stored type, meaning, and colour space as OpenEXR names it."""
+KINDS = {
+    "albedo": ("half", "diffuse albedo, linear Rec.709", "lin_rec709_scene"),
+    "single_scattering": ("float", "single-scattering albedo of each RGB band", "data"),
+    "radius": ("half", "mean free path of each RGB band [mm]", "data"),
+    "cycles_colour": ("half", "base colour with which Cycles returns the albedo", "data"),
+    "cycles_radius": ("half", "subsurface radius for that base colour [mm]", "data"),
+}
+"""Of each texture: stored type, meaning, and colour space as OpenEXR names it."""
+
+
+def _makers(
+    radius: Radius, mean: Triple, anisotropy: float, for_cycles: bool
+) -> dict[str, Callable[[Rows], NDArray[np.generic]]]:
+    """What makes each kind of texture from some rows of the skin."""
+
+    def lengths(part: Rows) -> NDArray[np.floating]:
+        return _lengths(part, radius, mean) if callable(radius) else np.asarray(mean)
+
+    def for_walk(part: Rows) -> NDArray[np.floating]:
+        colour = cycles.base_colour(part.albedo, anisotropy)
+        return cycles.radius(colour, lengths(part) / (1 - anisotropy))
+
+    makers: dict[str, Callable[[Rows], NDArray[np.generic]]] = {
+        "albedo": lambda part: part.albedo,
+        "single_scattering": lambda part: single_scattering_albedo(part.albedo, anisotropy),
+    }
+    if callable(radius):
+        makers["radius"] = lengths
+    if for_cycles:
+        cycles.check_anisotropy(anisotropy)
+        makers["cycles_colour"] = lambda part: cycles.base_colour(part.albedo, anisotropy)
+        makers["cycles_radius"] = for_walk
+    return makers
 
 
 @contextlib.contextmanager

@@ -18,12 +18,21 @@ import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterator
 from pathlib import Path
 
-from cutis.render.material import Gloss, Material
+from cutis.render.material import NEUTRAL, Gloss, Material
 from cutis.textures import replacing
 
 VERSION = "1.38"
 """Of the format: later readers upgrade it, earlier ones would refuse a later."""
-Value = float | tuple[float, ...] | bool
+Value = float | tuple[float, ...]
+OUTPUTS = {
+    "albedo": "color3",
+    "radius": "color3",
+    "normal": "vector3",
+    "coat_roughness": "float",
+    "open_pbr_roughness": "float",
+    "standard_roughness": "float",
+}
+"""What the graph of textures may hold, by name."""
 
 
 def write_materialx(material: Material, path: Path) -> None:
@@ -40,9 +49,7 @@ def materialx(material: Material) -> str:
         root.append(ElementTree.Comment(" " + "; ".join(material.credits).replace("--", "–") + " "))
     name = identifier(material.name)
     graph = ElementTree.SubElement(root, "nodegraph", name=f"{name}_textures")
-    _image(graph, "albedo", material.albedo, "lin_rec709")
-    if material.radius_texture is not None:
-        _image(graph, "radius", material.radius_texture, None)
+    _textures(graph, material)
     for kind, inputs in (
         ("open_pbr_surface", dict(open_pbr(material))),
         ("standard_surface", dict(standard_surface(material))),
@@ -52,7 +59,8 @@ def materialx(material: Material) -> str:
         )
         for label, value in inputs.items():
             if isinstance(value, str):
-                _input(shader, label, "color3", nodegraph=graph.attrib["name"], output=value)
+                kind_of = OUTPUTS[value]
+                _input(shader, label, kind_of, nodegraph=graph.attrib["name"], output=value)
             else:
                 _input(shader, label, *_typed(value))
         surface = ElementTree.SubElement(
@@ -69,7 +77,7 @@ def open_pbr(material: Material) -> Iterator[tuple[str, Value | str]]:
     weight, roughness = _below_coat(gloss)
     yield "base_color", "albedo"
     yield "specular_weight", weight
-    yield "specular_roughness", roughness
+    yield "specular_roughness", roughness if material.roughness is None else "open_pbr_roughness"
     yield "specular_ior", gloss.refractive_index
     yield "subsurface_weight", 1.0
     yield "subsurface_color", "albedo"
@@ -82,9 +90,12 @@ def open_pbr(material: Material) -> Iterator[tuple[str, Value | str]]:
         yield "subsurface_radius_scale", "radius"
     yield "subsurface_scatter_anisotropy", material.anisotropy
     yield "coat_weight", gloss.lobes[1][1] * gloss.strength
-    yield "coat_roughness", gloss.lobes[1][0]
+    yield "coat_roughness", gloss.lobes[1][0] if material.roughness is None else "coat_roughness"
     yield "coat_ior", gloss.refractive_index
     yield "coat_darkening", 0.0  # the albedo is what is seen already
+    if material.normal is not None:
+        yield "geometry_normal", "normal"
+        yield "geometry_coat_normal", "normal"
 
 
 def standard_surface(material: Material) -> Iterator[tuple[str, Value | str]]:
@@ -93,7 +104,8 @@ def standard_surface(material: Material) -> Iterator[tuple[str, Value | str]]:
     yield "base", 1.0
     yield "base_color", "albedo"
     yield "specular", gloss.lobes[0][1] * gloss.strength
-    yield "specular_roughness", gloss.lobes[0][0]
+    mapped = material.roughness is not None
+    yield "specular_roughness", "standard_roughness" if mapped else gloss.lobes[0][0]
     yield "specular_IOR", gloss.refractive_index
     yield "subsurface", 1.0
     yield "subsurface_color", "albedo"
@@ -101,8 +113,11 @@ def standard_surface(material: Material) -> Iterator[tuple[str, Value | str]]:
     yield "subsurface_scale", material.scale
     yield "subsurface_anisotropy", material.anisotropy
     yield "coat", gloss.lobes[1][1] * gloss.strength
-    yield "coat_roughness", gloss.lobes[1][0]
+    yield "coat_roughness", "coat_roughness" if mapped else gloss.lobes[1][0]
     yield "coat_IOR", gloss.refractive_index
+    if material.normal is not None:
+        yield "normal", "normal"
+        yield "coat_normal", "normal"
 
 
 def _below_coat(gloss: Gloss) -> tuple[float, float]:
@@ -142,11 +157,50 @@ def identifier(name: str) -> str:
     return allowed if allowed and not allowed[0].isdigit() else f"skin_{allowed}"
 
 
-def _image(graph: ElementTree.Element, name: str, file: str, space: str | None) -> None:
-    node = ElementTree.SubElement(graph, "image", name=f"{name}_image", type="color3")
+def _textures(graph: ElementTree.Element, material: Material) -> None:
+    """The nodes behind `OUTPUTS`, as far as the material has textures for them."""
+    _output(graph, "albedo", _image(graph, "albedo", "color3", material.albedo, "lin_rec709"))
+    if material.radius_texture is not None:
+        _output(graph, "radius", _image(graph, "radius", "color3", material.radius_texture))
+    if material.normal is not None:
+        image = _image(graph, "normal", "vector3", material.normal)
+        node = ElementTree.SubElement(graph, "normalmap", name="normal_map", type="vector3")
+        _input(node, "in", "vector3", nodename=image)
+        _output(graph, "normal", "normal_map")
+    if material.roughness is None:
+        return
+    image = _image(graph, "roughness", "float", material.roughness)
+    (main, _), (coat, _) = material.gloss.lobes
+    # below a coat the model is linear in both roughnesses at once (until it cuts off at 1), so that
+    # one factor undoes it
+    _scaled(graph, "open_pbr_roughness", image, _below_coat(material.gloss)[1] / NEUTRAL)
+    _scaled(graph, "standard_roughness", image, main / NEUTRAL)
+    _scaled(graph, "coat_roughness", image, coat / NEUTRAL)
+
+
+def _scaled(graph: ElementTree.Element, output: str, image: str, factor: float) -> None:
+    """An output that is `factor` times an image, at most 1."""
+    product = ElementTree.SubElement(graph, "multiply", name=f"{output}_product", type="float")
+    _input(product, "in1", "float", nodename=image)
+    _input(product, "in2", "float", value=_number(factor))
+    least = ElementTree.SubElement(graph, "min", name=f"{output}_limit", type="float")
+    _input(least, "in1", "float", nodename=product.attrib["name"])
+    _input(least, "in2", "float", value="1")
+    _output(graph, output, least.attrib["name"])
+
+
+def _image(
+    graph: ElementTree.Element, name: str, kind: str, file: str, space: str | None = None
+) -> str:
+    """An image node; returns its name."""
+    node = ElementTree.SubElement(graph, "image", name=f"{name}_image", type=kind)
     tag = {} if space is None else {"colorspace": space}
     _input(node, "file", "filename", value=file, **tag)
-    ElementTree.SubElement(graph, "output", name=name, type="color3", nodename=f"{name}_image")
+    return node.attrib["name"]
+
+
+def _output(graph: ElementTree.Element, name: str, node: str) -> None:
+    ElementTree.SubElement(graph, "output", name=name, type=OUTPUTS[name], nodename=node)
 
 
 def _typed(value: Value) -> tuple[str, str]:
