@@ -149,6 +149,8 @@ def export_to(
             radius=radius,
             anisotropy=g, millimetres=order.scene.millimetres_per_unit or METRE,
             edits=order.edits, amount=order.amount, blender=found, progress=progress,
+            normal=order.scene.normal,
+            roughness=order.scene.roughness if isinstance(order.scene.roughness, Path) else None,
         ).files  # fmt: skip
 
 
@@ -201,7 +203,8 @@ class _Feeds:
 
 def _recipe(order: Order, skin: "Skin") -> dict[str, Any]:
     """All that every picture of a sequence depends on, as JSON holds it."""
-    from cutis import __version__
+    from importlib.metadata import version
+
     from cutis.maps.files import digest
 
     scene = order.scene
@@ -220,7 +223,7 @@ def _recipe(order: Order, skin: "Skin") -> dict[str, Any]:
     for name in ("mesh", "normal", "roughness"):
         job[name] = digests.get(name, job[name])
     return {
-        "version": __version__,
+        "version": version("cutis"),
         "scene": job,
         "files": digests,
         "edited": [str(edit) for edit in order.edits],

@@ -48,6 +48,9 @@ def render(
     denoise: Annotated[bool, typer.Option(help="Remove noise with OpenImageDenoise.")] = True,
     seed: Annotated[int, typer.Option(min=0, help="Of the noise.")] = 0,
     turn: Annotated[float, typer.Option(help="Degrees that the head is turned.")] = 0.0,
+    zoom: Annotated[
+        float | None, typer.Option(help="1 shows the whole mesh; bundled heads have their own.")
+    ] = None,
     radius: Annotated[
         str,
         typer.Option(
@@ -146,6 +149,8 @@ def render(
         millimetres_per_unit=unit if head is None or unit is not None else head.millimetres,
         light=light, width=size, height=size, samples=samples, seed=seed, denoise=denoise,
         turn=turn, device=device, anisotropy=anisotropy, normal=normal,
+        zoom=(1.0 if head is None else head.zoom) if zoom is None else zoom,
+        centre=(0.5, 0.5) if head is None else head.centre,
         roughness=0.5 if roughness is None else roughness,
     )  # fmt: skip
     order = Order(

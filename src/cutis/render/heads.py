@@ -16,8 +16,8 @@ class Head:
     `mesh` is an OBJ file with UVs in [0, 1]; `albedos` maps names to 8 bit sRGB textures that fit
     them, light to dark, the first of which is the default; `mask` (white = head) covers what of the
     textures is head, None for all. Groups of the mesh in `untextured` have no UVs of their own.
-    `millimetres` is the length of one unit of the mesh. `credit` is what to print wherever a
-    picture of this head is published.
+    `zoom` and `centre` frame the face (`Scene`). `millimetres` is the length of one unit of the
+    mesh. `credit` is what to print wherever a picture of this head is published.
     """
 
     name: str
@@ -28,6 +28,8 @@ class Head:
     credit: str
     licence: str
     untextured: tuple[str, ...] = ()
+    zoom: float = 1.0
+    centre: tuple[float, float] = (0.5, 0.5)
 
     @property
     def albedo(self) -> Path:
@@ -52,6 +54,8 @@ def heads() -> tuple[Head, ...]:
         credit="head scan by Lee Perry-Smith / Infinite-Realities (www.triplegangers.com), "
         "CC BY 3.0 (creativecommons.org/licenses/by/3.0)",
         licence="CC BY 3.0",
+        zoom=1.65,
+        centre=(0.5, 0.7),
     )
     people = (
         "young_light_female2",

@@ -50,7 +50,7 @@ def patch_albedo(
         raise CutisError("three single-scattering albedos from 0 to 1 are needed")
     mi.set_variant("scalar_rgb")
     scene = mi.load_dict(_scene(mi, alpha, anisotropy, refractive_index))
-    film = np.array(mi.render(scene, spp=samples, seed=seed), dtype=np.float64)[..., :3]
+    film = np.array(mi.render(scene, spp=samples, seed=mi.UInt32(seed)), dtype=np.float64)[..., :3]
     pixels = film.reshape(-1, 3) / np.pi  # irradiance of radiance 1 is π
     return Measured(pixels.mean(axis=0), pixels.std(axis=0, ddof=1) / np.sqrt(len(pixels)))
 
