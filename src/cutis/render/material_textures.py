@@ -87,7 +87,11 @@ KINDS = {
     "albedo": ("half", "diffuse albedo, linear Rec.709", "lin_rec709_scene"),
     "single_scattering": ("float", "single-scattering albedo of each RGB band", "data"),
     "radius": ("half", "mean free path of each RGB band [mm]", "data"),
-    "cycles_colour": ("half", "base colour with which Cycles returns the albedo", "data"),
+    "cycles_colour": (
+        "half",
+        "base colour with which Cycles returns the albedo",
+        "lin_rec709_scene",
+    ),
     "cycles_radius": ("half", "subsurface radius for that base colour [mm]", "data"),
 }
 """Of each texture: stored type, meaning, and colour space as OpenEXR names it."""
