@@ -64,9 +64,21 @@ def single_scattering_albedo(
     wanted = _checked(given, "diffuse albedo")
     _check_medium(anisotropy, refractive_index)
     root = _table(float(anisotropy), float(refractive_index))
-    s = np.interp(np.sqrt(wanted), np.linspace(0, 1, STEPS + 1), root)
+    s = from_table(root, np.sqrt(wanted))
     found = 1 - s * s
     return found.astype(np.float32) if given.dtype == np.float32 else found
+
+
+def from_table(table: NDArray[np.float64], place: NDArray[np.floating]) -> NDArray[np.floating]:
+    """Linear interpolation in values at equal steps from 0 to 1, at `place` (...), 0 to 1.
+
+    Several times as fast as `numpy.interp`, which searches.
+    """
+    scaled = place * (len(table) - 1)
+    below = np.minimum(scaled.astype(np.int32), len(table) - 2)
+    scaled -= below
+    low = table[below]
+    return np.asarray(low + scaled * (table[below + 1] - low))
 
 
 @lru_cache(maxsize=16)
