@@ -103,6 +103,7 @@ def main() -> None:
                 scene = Scene(
                     mesh=subject.head.mesh, millimetres_per_unit=subject.head.millimetres,
                     light=light, width=options.size, height=options.size, samples=options.samples,
+                    zoom=subject.head.zoom, centre=subject.head.centre,
                 )  # fmt: skip
                 frames = [Frame(1), *(
                     Frame(k, edits=PRESETS[name]) for k, name in enumerate(subject.edits, 2)
