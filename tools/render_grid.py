@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from matplotlib import get_data_path
 from pages import rewrite
 from PIL import Image, ImageDraw, ImageFont
 from rich.progress import Progress
@@ -64,7 +65,7 @@ def subjects() -> list[Subject]:
 
 def sheet(rows: list[list[Path]], labels: list[list[str]]) -> Image.Image:
     """Pictures in rows, each under its label."""
-    font = ImageFont.load_default(13)
+    font = ImageFont.truetype(Path(get_data_path(), "fonts", "ttf", "DejaVuSans.ttf"), 11)
     side = Image.open(rows[0][0]).width
     page = Image.new("RGB", (side * len(rows[0]), (side + CAPTION) * len(rows)), "white")
     for y, (files, names) in enumerate(zip(rows, labels, strict=True)):
@@ -94,7 +95,11 @@ def main() -> None:
     for subject in cast:
         if not subject.maps.is_file():
             subject.estimate()
-    table = ["| light | skin | edit | ΔL* | Δa* | Δb* |", "|---|---|---|---|---|---|"]
+    table = [
+        "| light | skin | blood × 0.125 | × 0.5 | × 3 "
+        "| melanin × 1.5 (0.5) | × 3 (1.5) | × 5 (3) |",
+        "|---|---|---|---|---|---|---|---|",
+    ]
     with Progress() as bar:
         task = bar.add_task("rendering", total=len(LIGHTS) * len(cast))
         for light in LIGHTS:
@@ -119,9 +124,9 @@ def main() -> None:
                 rows.append(files)
                 labels.append([f"{subject.label}: original", *names])
                 plain = seen(files[0])
-                for name, file in zip(names, files[1:], strict=True):
-                    change = " | ".join(f"{v:+.1f}" for v in seen(file) - plain)
-                    table.append(f"| {light} | {subject.label} | {name} | {change} |")
+                changes = [seen(file) - plain for file in files[1:]]
+                cells = " | ".join(f"{by[0]:+.1f}, {by[1]:+.1f}" for by in changes)
+                table.append(f"| {light} | {subject.label} | {cells} |")
                 bar.advance(task)
             sheet(rows, labels).save(PAGE / f"grid-{light}.jpg", quality=88)
     rewrite("render.md", grid="\n".join(table))

@@ -58,6 +58,8 @@ def fit(
     if output is not None and output.resolve() == spectra.resolve():
         raise CutisError(f"{output.name} is the CSV of spectra itself; write to another name")
     table = read_spectra(spectra)
+    if table.wavelengths.max() < 3:
+        raise CutisError(f"{spectra.name}: its wavelengths look like µm; give them in nm")
     known = WAVELENGTHS[[0, -1]]
     inside = (table.wavelengths >= max(low, known[0])) & (table.wavelengths <= min(high, known[1]))
     with steps(1, quiet) as progress:
