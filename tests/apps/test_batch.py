@@ -202,7 +202,8 @@ def test_a_cluster_that_loses_a_worker(show, scheduler, worker, cutis, tmp_path)
         said = run.communicate(timeout=90)[1]
     assert run.returncode == 0, said
     assert cutis(*arguments, "-o", here).code == 0
-    assert written(out) == written(here)
+    # what the killed worker was writing lies there under hidden names until the next run
+    assert [name for name in written(out) if not name.startswith(".")] == written(here)
     for name in "abc":
         spread, alone = (load_maps(folder / f"{name}.skin.exr") for folder in (out, here))
         np.testing.assert_array_equal(spread.parameters(), alone.parameters())
