@@ -16,6 +16,7 @@ from cutis.optics import (
     EPIDERMAL_BLOOD,
     NAMES,
     PARAMETERS,
+    WAVELENGTHS,
     Parameter,
     Tissue,
 )
@@ -34,15 +35,15 @@ class AlbedoSpace:
 
     def __init__(self, table: SpectralTable) -> None:
         """Of an existing table; `albedo_space` makes and keeps the common ones."""
-        tissue, at = table.tissue, table.wavelengths
-        deoxygenated, oxygenated = tissue.whole_blood(at)
+        tissue = table.tissue
+        deoxygenated, oxygenated = tissue.whole_blood(WAVELENGTHS)
         spectra = [
-            tissue.eumelanin(at),
-            tissue.pheomelanin(at),
-            tissue.epidermis_background(at),
+            tissue.eumelanin(WAVELENGTHS),
+            tissue.pheomelanin(WAVELENGTHS),
+            tissue.epidermis_background(WAVELENGTHS),
             deoxygenated,
             oxygenated,
-            tissue.baseline(at),
+            tissue.baseline(WAVELENGTHS),
         ]
         self.tissue = tissue
         self.table = table
@@ -54,7 +55,7 @@ class AlbedoSpace:
 
     @cached_property
     def _to_rgb(self) -> NDArray[np.float32]:
-        return spectrum_to_rgb(self.table.wavelengths).astype(np.float32)
+        return spectrum_to_rgb(WAVELENGTHS).astype(np.float32)
 
     @property
     def model(self) -> tuple[Array, Array, Array, Array, Array]:
@@ -69,9 +70,7 @@ class AlbedoSpace:
     def reflectance(
         self, parameters: ArrayLike, out: NDArray[np.float32] | None = None
     ) -> NDArray[np.float32]:
-        """(..., 5) parameters → (..., n) reflectance in [0, 1] at the table's wavelengths.
-
-        Those are `optics.WAVELENGTHS`, 41, unless the table is another.
+        """(..., 5) parameters → (..., 41) reflectance in [0, 1] at `optics.WAVELENGTHS`.
 
         Written into `out`, C-contiguous float32 of that shape, when it is given (2048² skins take
         0.7 GB). Raises CutisError when `out` is another kind of array.
@@ -79,12 +78,12 @@ class AlbedoSpace:
         from cutis.albedo.spectrum_kernel import reflectance_kernel
 
         flat, shape = self._rows(parameters)
-        whole = (*shape, len(self.table.wavelengths))
+        whole = (*shape, len(WAVELENGTHS))
         if out is None:
             out = np.empty(whole, dtype=np.float32)
         elif out.shape != whole or out.dtype != np.float32 or not out.flags.c_contiguous:
             raise CutisError(f"out must be a C-contiguous float32 array of shape {whole}")
-        spectra = out.reshape(-1, len(self.table.wavelengths))
+        spectra = out.reshape(-1, len(WAVELENGTHS))
         for band in _bands(len(flat)):
             reflectance_kernel(_float32(flat[band]), self.slots, *self._separated, spectra[band])
         return out

@@ -33,10 +33,10 @@ boundary (docs/transport.md)."""
 
 @dataclass(frozen=True)
 class SpectralTable:
-    """Albedo at some wavelengths as B-spline coefficients, with the range of each axis.
+    """Albedo at the 41 wavelengths as B-spline coefficients, with the range of each axis.
 
-    `wavelengths` (n,) in nm; `coefficients` (n, E+3, D+3, T+3) float32; `low`, `high` (n, 3) ends
-    of μa_e^¼, μa_d^¼ and log t. `nodes` (n, NODES…) are the exact albedos that it was made from.
+    `coefficients` (41, E+3, D+3, T+3) float32; `low`, `high` (41, 3) ends of μa_e^¼, μa_d^¼ and
+    log t. `nodes` (41, NODES…) are the exact albedos that it was made from.
     """
 
     tissue: Tissue
@@ -44,24 +44,21 @@ class SpectralTable:
     coefficients: NDArray[np.float32]
     low: NDArray[np.float64]
     high: NDArray[np.float64]
-    wavelengths: NDArray[np.float64]
 
 
-def axis_ranges(
-    tissue: Tissue, wavelengths: NDArray[np.float64] = WAVELENGTHS
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """(n, 3) lowest and highest μa_e^¼, μa_d^¼ and log t that the parameter ranges reach.
+def axis_ranges(tissue: Tissue) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """(41, 3) lowest and highest μa_e^¼, μa_d^¼ and log t that the parameter ranges reach.
 
     A thickness that is the same for all skins has a narrow range around it.
     """
     share = np.array([0.0, 0.0, 1.0, 1.0])
     melanin = np.array([MELANIN.low, MELANIN.high, MELANIN.low, MELANIN.high])
     blood = np.array([BLOOD.low, BLOOD.high, BLOOD.low, BLOOD.high])
-    epidermis = tissue.epidermis_absorption(melanin, share, wavelengths)
-    dermis = tissue.dermis_absorption(blood, share, wavelengths)
+    epidermis = tissue.epidermis_absorption(melanin, share, WAVELENGTHS)
+    dermis = tissue.dermis_absorption(blood, share, WAVELENGTHS)
     if tissue.epidermal_blood:
         epidermis += np.array([[0.0], [EPIDERMAL_BLOOD.high]]).repeat(2, 0) * dermis.max(0)
-    ones = np.ones(len(wavelengths))
+    ones = np.ones(len(WAVELENGTHS))
     held = dict(tissue.fixed).get("thickness")
     thin, thick = (THICKNESS.low, THICKNESS.high) if held is None else (held / 1.01, held * 1.01)
     low = [epidermis.min(0) ** 0.25, dermis.min(0) ** 0.25, np.log(thin) * ones]
@@ -70,15 +67,13 @@ def axis_ranges(
 
 
 def build(
-    tissue: Tissue = ALIAGA2022,
-    progress: Callable[[int, int], None] | None = None,
-    wavelengths: NDArray[np.float64] = WAVELENGTHS,
+    tissue: Tissue = ALIAGA2022, progress: Callable[[int, int], None] | None = None
 ) -> SpectralTable:
-    """Solves transport exactly at every node (5184 cases a wavelength, 0.1 s of two cores).
+    """Solves transport exactly at every node (212 544 cases, seconds on two cores).
 
-    `progress(done, total)` is called after each of the `wavelengths` (n,) in nm.
+    `progress(done, total)` is called after each wavelength.
     """
-    low, high = axis_ranges(tissue, wavelengths)
+    low, high = axis_ranges(tissue)
 
     def solve(i: int) -> NDArray[np.float64]:
         axes = [low[i, a] + chebyshev(NODES[a]) * (high[i, a] - low[i, a]) for a in range(3)]
@@ -86,35 +81,34 @@ def build(
             axes[0] ** 4,
             axes[1] ** 4,
             np.exp(axes[2]),
-            float(tissue.scattering(wavelengths)[i]),
-            float(tissue.anisotropy(wavelengths)[i]),
+            float(tissue.scattering(WAVELENGTHS)[i]),
+            float(tissue.anisotropy(WAVELENGTHS)[i]),
             dimension=tissue.dimension,
             refractive_index=tissue.outer_index,
             count=ORDINATES,
-            dermis_scattering=float(tissue.scattering(wavelengths)[i]) * tissue.dermis_scattering,
+            dermis_scattering=float(tissue.scattering(WAVELENGTHS)[i]) * tissue.dermis_scattering,
         )
 
-    nodes = np.empty((len(wavelengths), *NODES))
+    nodes = np.empty((len(WAVELENGTHS), *NODES))
     with ThreadPoolExecutor() as pool:
-        for i, solved in enumerate(pool.map(solve, range(len(wavelengths)))):
+        for i, solved in enumerate(pool.map(solve, range(len(WAVELENGTHS)))):
             nodes[i] = solved
             if progress:
-                progress(i + 1, len(wavelengths))
-    return _finish(tissue, nodes, wavelengths)
+                progress(i + 1, len(WAVELENGTHS))
+    return _finish(tissue, nodes)
 
 
-def _finish(
-    tissue: Tissue, nodes: NDArray[np.float64], wavelengths: NDArray[np.float64]
-) -> SpectralTable:
+def _finish(tissue: Tissue, nodes: NDArray[np.float64]) -> SpectralTable:
     coefficients = nodes
     for axis in range(3):
         matrix = chebyshev_to_spline(NODES[axis], CELLS[axis])
         coefficients = np.moveaxis(
             np.tensordot(matrix, coefficients, axes=(1, axis + 1)), 0, axis + 1
         )
-    low, high = axis_ranges(tissue, wavelengths)
-    splines = np.ascontiguousarray(coefficients, dtype=np.float32)
-    return SpectralTable(tissue, nodes, splines, low, high, wavelengths)
+    low, high = axis_ranges(tissue)
+    return SpectralTable(
+        tissue, nodes, np.ascontiguousarray(coefficients, dtype=np.float32), low, high
+    )
 
 
 def save(table: SpectralTable, file: str | IO[bytes]) -> None:
@@ -127,7 +121,7 @@ def load(file: str | IO[bytes]) -> SpectralTable:
     """Reads what `save` wrote."""
     with np.load(file, allow_pickle=False) as stored:
         tissue = Tissue(**json.loads(str(stored["tissue"])))
-        return _finish(tissue, stored["nodes"].astype(np.float64), WAVELENGTHS)
+        return _finish(tissue, stored["nodes"].astype(np.float64))
 
 
 def spectral_table(tissue: Tissue = ALIAGA2022) -> SpectralTable:

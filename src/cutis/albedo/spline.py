@@ -100,54 +100,35 @@ def _mixtures(x: Any, slots: Any, spectra: Any, b: Any) -> Any:
     return pigment, blood, epidermis, x[1] * blood + (ONE - x[1]) * spectra[5, b]
 
 
-@njit(inline="always", fastmath=True)
-def _band(x: Any, slots: Any, model: Any, b: Any, place: Any) -> Any:
-    """Albedo of one skin at band b, its partials by the five, by μa_e, and μa of its blood.
-
-    `place` is (cell, weights, slopes) of the thickness.
-    """
-    spectra, table, low, scale = model
-    k, wt, dwt = place
-    quarter = np.float32(0.25)
-    pigment, blood, epidermis, dermis = _mixtures(x, slots, spectra, b)
-    re, rd = np.sqrt(np.sqrt(epidermis)), np.sqrt(np.sqrt(dermis))
-    i, fe = locate_cell(re, low[b, 0], scale[b, 0], table.shape[1])
-    j, fd = locate_cell(rd, low[b, 1], scale[b, 1], table.shape[2])
-    we, wd, c = cubic_weights(fe), cubic_weights(fd), table[b]
-    albedo = _sum(c, i, j, k, we, wd, wt)
-    # d μ^¼ / dμ = μ^¼ / 4μ; d log t / dt = 1/t
-    by_e = _sum(c, i, j, k, _slopes(fe), wd, wt) * scale[b, 0] * quarter * re / epidermis
-    by_d = _sum(c, i, j, k, we, _slopes(fd), wt) * scale[b, 1] * quarter * rd / dermis
-    by_t = _sum(c, i, j, k, we, wd, dwt) * scale[b, 2] / x[2]
-    partials = (
-        by_e * (pigment - spectra[2, b]),
-        by_d * (blood - spectra[5, b]),
-        by_t,
-        by_e * x[0] * (spectra[0, b] - spectra[1, b]),
-        by_d * x[1] * (spectra[4, b] - spectra[3, b]),
-    )
-    return albedo, partials, by_e, blood
-
-
-@njit(inline="always", fastmath=True)
-def _thickness_place(x: Any, table: Any, low: Any, scale: Any) -> Any:
-    """Cell of the thickness, weights there and their slopes; the axis is that of every band."""
-    k, ft = locate_cell(np.log(x[2]), low[0, 2], scale[0, 2], table.shape[3])
-    return k, cubic_weights(ft), _slopes(ft)
-
-
 @njit(fastmath=True, cache=True)
 def rgb_and_slope(
     x: Any, slots: Any, spectra: Any, table: Any, low: Any, scale: Any, to_rgb: Any, rgb: Any,
     slope: Any
 ) -> None:  # fmt: skip
     """Fills rgb (3,) and slope (3, n) = ∂RGB/∂parameter, per unit of each, of one skin x (n,)."""
-    place = _thickness_place(x, table, low, scale)
-    model = (spectra, table, low, scale)
+    quarter = np.float32(0.25)
+    k, ft = locate_cell(np.log(x[2]), low[0, 2], scale[0, 2], table.shape[3])
+    wt, dwt = cubic_weights(ft), _slopes(ft)
     rgb[:] = 0
     slope[:] = 0
     for b in range(table.shape[0]):
-        albedo, partials, by_e, blood = _band(x, slots, model, b, place)
+        pigment, blood, epidermis, dermis = _mixtures(x, slots, spectra, b)
+        re, rd = np.sqrt(np.sqrt(epidermis)), np.sqrt(np.sqrt(dermis))
+        i, fe = locate_cell(re, low[b, 0], scale[b, 0], table.shape[1])
+        j, fd = locate_cell(rd, low[b, 1], scale[b, 1], table.shape[2])
+        we, wd, c = cubic_weights(fe), cubic_weights(fd), table[b]
+        albedo = _sum(c, i, j, k, we, wd, wt)
+        # d μ^¼ / dμ = μ^¼ / 4μ; d log t / dt = 1/t
+        by_e = _sum(c, i, j, k, _slopes(fe), wd, wt) * scale[b, 0] * quarter * re / epidermis
+        by_d = _sum(c, i, j, k, we, _slopes(fd), wt) * scale[b, 1] * quarter * rd / dermis
+        by_t = _sum(c, i, j, k, we, wd, dwt) * scale[b, 2] / x[2]
+        partials = (
+            by_e * (pigment - spectra[2, b]),
+            by_d * (blood - spectra[5, b]),
+            by_t,
+            by_e * x[0] * (spectra[0, b] - spectra[1, b]),
+            by_d * x[1] * (spectra[4, b] - spectra[3, b]),
+        )
         for channel in range(3):
             weight = to_rgb[b, channel]
             rgb[channel] += albedo * weight
@@ -156,19 +137,6 @@ def rgb_and_slope(
             if len(slots) > 5:
                 slope[channel, 4] += by_e * x[5] * (spectra[4, b] - spectra[3, b]) * weight
                 slope[channel, 5] += by_e * (blood - spectra[2, b]) * weight
-
-
-@njit(fastmath=True, cache=True)
-def spectrum_and_slope(
-    x: Any, slots: Any, spectra: Any, table: Any, low: Any, scale: Any, out: Any, slope: Any
-) -> None:
-    """Fills out (bands,) and slope (bands, 5) = ∂albedo/∂parameter of one skin x (5,)."""
-    place = _thickness_place(x, table, low, scale)
-    model = (spectra, table, low, scale)
-    for b in range(table.shape[0]):
-        out[b], partials, _, _ = _band(x, slots, model, b, place)
-        for p in range(5):
-            slope[b, p] = partials[p]
 
 
 @njit(parallel=True, fastmath=True, cache=True)
