@@ -13,6 +13,7 @@ from cutis.apps import (
     estimate,
     export,
     figures,
+    fit,
     info,
     simulate,
     spectrum,
@@ -55,6 +56,7 @@ app.command("estimate")(estimate.estimate)
 app.command("edit")(edit.edit)
 app.command("export")(export.export)
 app.command("spectrum")(spectrum.spectrum)
+app.command("fit")(fit.fit)
 app.command("simulate")(simulate.simulate)
 app.command("figures")(figures.figures)
 app.command("info")(info.info)
