@@ -140,3 +140,33 @@ def write_face(face_rgb):
         return path
 
     return write
+
+
+@pytest.fixture(scope="session")
+def write_envi():
+    """`write_envi(path, values (H, W, n), interleave, dtype, …)` writes an ENVI cube.
+
+    Wavelengths are 450, 500, … nm. `fields` replace those of the header; None leaves one out.
+    """
+
+    def write(path, values, interleave="bsq", dtype="<f4", ending=".img", offset=0, **fields):
+        """NAME.hdr and its values; `fields` replace those of the header, None leaves one out."""
+        import numpy as np
+
+        wavelengths = 450 + 50.0 * np.arange(values.shape[2])
+        kind = {"u1": 1, "i2": 2, "i4": 3, "f4": 4, "f8": 5, "u2": 12}[dtype[1:]]
+        axes = {"bsq": (2, 0, 1), "bil": (0, 2, 1), "bip": (0, 1, 2)}.get(interleave, (0, 1, 2))
+        data = np.ascontiguousarray(values.transpose(axes)).astype(dtype).tobytes()
+        path.with_suffix(ending).write_bytes(bytes(offset) + data)
+        header = {
+            "description": "{made\n by a test}",
+            "lines": values.shape[0], "samples": values.shape[1], "bands": values.shape[2],
+            "header offset": offset, "data type": kind, "interleave": interleave,
+            "byte order": int(dtype[0] == ">"), "wavelength units": "Nanometers",
+            "wavelength": "{" + ",\n ".join(f"{lam:g}" for lam in wavelengths) + "}", **fields,
+        }  # fmt: skip
+        text = [f"{name} = {value}" for name, value in header.items() if value is not None]
+        path.write_text("\n".join(["ENVI", *text, ""]), encoding="utf-8")
+        return path
+
+    return write

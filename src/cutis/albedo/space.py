@@ -77,7 +77,7 @@ class AlbedoSpace:
         """
         from cutis.albedo.spectrum_kernel import reflectance_kernel
 
-        flat, shape = self._rows(parameters)
+        flat, shape = self.rows(parameters)
         whole = (*shape, len(WAVELENGTHS))
         if out is None:
             out = np.empty(whole, dtype=np.float32)
@@ -92,7 +92,7 @@ class AlbedoSpace:
         """(..., 5) parameters → (..., 3) linear sRGB under D65."""
         from cutis.albedo.spectrum_kernel import rgb_kernel
 
-        flat, shape = self._rows(parameters)
+        flat, shape = self.rows(parameters)
         out = np.empty((len(flat), 3), dtype=np.float32)
         for band in _bands(len(flat)):
             rgb_kernel(_float32(flat[band]), self.slots, *self._separated, self._to_rgb, out[band])
@@ -104,7 +104,7 @@ class AlbedoSpace:
         """(..., 5) parameters → (..., 3) linear sRGB and (..., 3, 5) its slope per parameter."""
         from cutis.albedo.spline import rgb_gradient_kernel
 
-        flat, shape = self._rows(parameters)
+        flat, shape = self.rows(parameters)
         out = np.empty((len(flat), 3), dtype=np.float32)
         slope = np.empty((len(flat), 3, flat.shape[1]), dtype=np.float32)
         for band in _bands(len(flat)):
@@ -129,7 +129,7 @@ class AlbedoSpace:
         """Where the tissue's free parameters stand among those."""
         return tuple(self.every_parameter.index(p) for p in self.tissue.parameters)
 
-    def _rows(self, parameters: ArrayLike) -> tuple[NDArray[np.floating], tuple[int, ...]]:
+    def rows(self, parameters: ArrayLike) -> tuple[NDArray[np.floating], tuple[int, ...]]:
         """(n, 5 or 6) of every parameter, those that the tissue holds included, and the shape."""
         values = np.asarray(parameters)
         flat = values.reshape(-1, len(self.places))

@@ -32,7 +32,7 @@ def cubic_weights(f: Any) -> Any:
 
 
 @njit(inline="always", fastmath=True)
-def _slopes(f: Any) -> Any:
+def weight_slopes(f: Any) -> Any:
     """Derivatives of `cubic_weights` by f."""
     g, three_halves, two = ONE - f, np.float32(1.5), np.float32(2)
     return (
@@ -90,7 +90,7 @@ def first_node(cell: Any, cells: Any) -> Any:
 
 
 @njit(inline="always", fastmath=True)
-def _mixtures(x: Any, slots: Any, spectra: Any, b: Any) -> Any:
+def mixtures(x: Any, slots: Any, spectra: Any, b: Any) -> Any:
     """μa of melanin, of blood, of epidermis and of dermis at band b, cm⁻¹."""
     pigment = x[3] * spectra[0, b] + (ONE - x[3]) * spectra[1, b]
     blood = x[4] * spectra[4, b] + (ONE - x[4]) * spectra[3, b]
@@ -108,19 +108,19 @@ def rgb_and_slope(
     """Fills rgb (3,) and slope (3, n) = ∂RGB/∂parameter, per unit of each, of one skin x (n,)."""
     quarter = np.float32(0.25)
     k, ft = locate_cell(np.log(x[2]), low[0, 2], scale[0, 2], table.shape[3])
-    wt, dwt = cubic_weights(ft), _slopes(ft)
+    wt, dwt = cubic_weights(ft), weight_slopes(ft)
     rgb[:] = 0
     slope[:] = 0
     for b in range(table.shape[0]):
-        pigment, blood, epidermis, dermis = _mixtures(x, slots, spectra, b)
+        pigment, blood, epidermis, dermis = mixtures(x, slots, spectra, b)
         re, rd = np.sqrt(np.sqrt(epidermis)), np.sqrt(np.sqrt(dermis))
         i, fe = locate_cell(re, low[b, 0], scale[b, 0], table.shape[1])
         j, fd = locate_cell(rd, low[b, 1], scale[b, 1], table.shape[2])
         we, wd, c = cubic_weights(fe), cubic_weights(fd), table[b]
         albedo = _sum(c, i, j, k, we, wd, wt)
         # d μ^¼ / dμ = μ^¼ / 4μ; d log t / dt = 1/t
-        by_e = _sum(c, i, j, k, _slopes(fe), wd, wt) * scale[b, 0] * quarter * re / epidermis
-        by_d = _sum(c, i, j, k, we, _slopes(fd), wt) * scale[b, 1] * quarter * rd / dermis
+        by_e = _sum(c, i, j, k, weight_slopes(fe), wd, wt) * scale[b, 0] * quarter * re / epidermis
+        by_d = _sum(c, i, j, k, we, weight_slopes(fd), wt) * scale[b, 1] * quarter * rd / dermis
         by_t = _sum(c, i, j, k, we, wd, dwt) * scale[b, 2] / x[2]
         partials = (
             by_e * (pigment - spectra[2, b]),

@@ -13,6 +13,7 @@ from cutis.apps import (
     estimate,
     export,
     figures,
+    fit,
     info,
     render,
     simulate,
@@ -57,6 +58,7 @@ app.command("edit")(edit.edit)
 app.command("render")(render.render)
 app.command("export")(export.export)
 app.command("spectrum")(spectrum.spectrum)
+app.command("fit")(fit.fit)
 app.command("simulate")(simulate.simulate)
 app.command("figures")(figures.figures)
 app.command("info")(info.info)

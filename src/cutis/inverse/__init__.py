@@ -4,16 +4,20 @@ from cutis.inverse.calibration import Calibration, calibrate
 from cutis.inverse.fit import explain, fit
 from cutis.inverse.metamers import Family, colours_under, metamers, spread
 from cutis.inverse.models import MODELS, Model, load_model, on_device
+from cutis.inverse.spectral_fit import SpectralFit, SpectralFitter, fit_spectra
 
 __all__ = [
     "MODELS",
     "Calibration",
     "Family",
     "Model",
+    "SpectralFit",
+    "SpectralFitter",
     "calibrate",
     "colours_under",
     "explain",
     "fit",
+    "fit_spectra",
     "load_model",
     "metamers",
     "on_device",

@@ -1,0 +1,264 @@
+"""The skin that best explains a reflectance spectrum, and how well the spectrum tells it.
+
+For each spectrum m at wavelengths λ the fit minimises
+
+    Σ_λ (ρ + (1 − ρ) f(u, λ) − m(λ))²,   u ∈ [0, 1]ᵖ,
+
+over network coordinates u, f being the albedo space at λ and ρ what the surface reflects at once
+(0 where the instrument leaves that out). Levenberg–Marquardt with exact slopes starts from the
+nearest skins of a library, one from each part of it, and keeps the lowest end.
+
+The covariance is that of coordinates, (JᵀJ / σ² + 12 I)⁻¹, brought to units by the slopes
+∂parameter/∂u. σ² is the residual's Σ/(n − p), or `noise`². 12 is the precision of a coordinate of
+which nothing is known but its range, so that what a spectrum does not tell gets the width of its
+range instead of infinity. A residual that is not noise but the model's error goes from wavelength
+to wavelength in waves: σ is then a scale of how far parameters are from what another, equally good
+model would say, no more.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from cutis.albedo import AlbedoSpace, albedo_space
+from cutis.albedo.sampled import SampledSpace
+from cutis.errors import CutisError
+from cutis.optics import ALIAGA2022, NAMES, Parameter, Tissue
+
+LIBRARY = 4096
+"""Skins among which starts are looked up."""
+PARTS = 8
+"""Parts of the library, each of which gives a start: low and high thickness, eumelanin, blood."""
+ITERATIONS = 60
+UNKNOWN = 12.0
+"""Precision of a coordinate that is uniform in [0, 1]."""
+LEAST_NOISE = 1e-5
+"""Standard deviation of the table itself; no residual is believed to be smaller."""
+NO_RESIDUAL = 0.005
+"""Noise taken where there are no more wavelengths than free parameters and none is given."""
+BATCH = 1 << 13
+"""Spectra fitted at a time."""
+
+
+@dataclass(frozen=True, eq=False)
+class SpectralFit:
+    """Skins (n, p) that explain n spectra, in the units and order of `parameters`.
+
+    `values` (n, p) float64; `covariance` (n, p, p) in the same units, 0 for what was held; `rmse`
+    (n,) of the reflectance as measured. Of spectra with fewer usable wavelengths than free
+    parameters, all are NaN.
+    """
+
+    parameters: tuple[Parameter, ...]
+    values: NDArray[np.float64]
+    covariance: NDArray[np.float64]
+    rmse: NDArray[np.float64]
+
+    @property
+    def sigma(self) -> NDArray[np.float64]:
+        """(n, p) standard deviations."""
+        return np.sqrt(np.diagonal(self.covariance, axis1=1, axis2=2))
+
+
+class SpectralFitter:
+    """Fits spectra at the same wavelengths; makes its library of starts once."""
+
+    def __init__(
+        self,
+        wavelengths: ArrayLike,
+        tissue: Tissue = ALIAGA2022,
+        *,
+        specular: float = 0.0,
+        held: Mapping[str, float] | None = None,
+        noise: float | None = None,
+    ) -> None:
+        """Arguments and errors are those of `fit_spectra`."""
+        if not 0 <= specular < 0.2:
+            raise CutisError(f"specular = {specular:g}: a surface of skin reflects 0 to 0.2")
+        if noise is not None and not 0 < noise < 1:
+            raise CutisError(f"noise = {noise:g}: it must lie between 0 and 1")
+        self.specular, self.noise = float(specular), noise
+        self.space: AlbedoSpace = albedo_space(tissue)
+        self.sampled = SampledSpace(self.space, wavelengths)
+        self.free = _free(tissue, held or {})
+        self._held = {k: v for k, v in (held or {}).items()}
+        if not self.free.any():
+            raise CutisError("every parameter is held; leave one free to fit")
+        if len(np.unique(self.sampled.wavelengths)) < self.free.sum():
+            raise CutisError(
+                f"{len(np.unique(self.sampled.wavelengths))} wavelengths are too few for "
+                f"{self.free.sum()} free parameters; hold some of them, oxygenation for one"
+            )
+        self._library, self._spectra, self._part = self._make_library()
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """What is fitted or held, in the order of results."""
+        return self.space.tissue.parameters
+
+    def fit(self, spectra: ArrayLike, weights: ArrayLike | None = None) -> SpectralFit:
+        """(n, wavelengths) reflectance → skins; NaN marks what was not measured.
+
+        `weights` of the same shape (or one per wavelength) scale squared residuals.
+        """
+        measured = np.asarray(spectra, dtype=np.float64)
+        bands = len(self.sampled.wavelengths)
+        if measured.ndim != 2 or measured.shape[1] != bands:
+            raise CutisError(f"spectra must be (n, {bands}), not of shape {measured.shape}")
+        weight = np.broadcast_to(1.0 if weights is None else np.asarray(weights), measured.shape)
+        count, size = len(measured), len(self.parameters)
+        found = SpectralFit(
+            self.parameters,
+            np.empty((count, size)),
+            np.empty((count, size, size)),
+            np.empty(count),
+        )
+        for start in range(0, count, BATCH):
+            part = slice(start, start + BATCH)
+            self._fit(measured[part], weight[part], found, part)
+        return found
+
+    def reflectance(self, values: ArrayLike) -> NDArray[np.float64]:
+        """(n, p) skins → (n, wavelengths) reflectance as the instrument sees it."""
+        albedo = self.sampled.reflectance(values)
+        return np.asarray(self.specular + (1 - self.specular) * albedo, dtype=np.float64)
+
+    def _fit(
+        self, measured: NDArray[np.float64], weight: NDArray[np.floating], found: SpectralFit,
+        part: slice,
+    ) -> None:  # fmt: skip
+        from cutis.inverse.spectral_kernel import fit_kernel
+
+        known = np.isfinite(measured) & (weight > 0)
+        w = np.where(known, weight, 0.0).astype(np.float32)
+        y = np.where(known, (measured - self.specular) / (1 - self.specular), 0.0)
+        y = y.astype(np.float32)
+        used = known.sum(axis=1)
+        every = self.space.every_parameter
+        best = np.empty((len(y), len(every)))
+        matrices = np.empty((len(y), len(every), len(every)))
+        costs = np.empty(len(y))
+        starts, held = self.starts(y, w), np.ones(len(every), dtype=np.bool_)
+        held[list(self.space.places)] = ~self.free
+        power = np.array([p.root for p in every], dtype=np.float32)
+        low = np.array([p.low ** (1 / p.root) for p in every], dtype=np.float32)
+        high = np.array([p.high ** (1 / p.root) for p in every], dtype=np.float32)
+        axes, model = (low, high - low, power), self.sampled.model
+        fit_kernel(
+            y, w, starts, held, ITERATIONS, axes, self.space.slots, model, best, matrices, costs
+        )  # fmt: skip
+        places = list(self.space.places)
+        u = best[:, places]
+        values = np.stack(
+            [p.from_coordinate(u[:, i]) for i, p in enumerate(self.parameters)], axis=-1
+        )
+        for i, p in enumerate(self.parameters):
+            if p.name in self._held:
+                values[:, i] = self._held[p.name]
+        unit = 1 - self.specular
+        mean = np.where(known, weight, 0.0).sum(axis=1) / np.maximum(used, 1)
+        spread = unit**2 * costs / np.where(mean > 0, mean, 1.0)  # Σ residual², as measured
+        bad = used < self.free.sum()
+        found.values[part] = np.where(bad[:, None], np.nan, values)
+        found.rmse[part] = np.where(bad, np.nan, np.sqrt(spread / np.maximum(used, 1)))
+        variance = self._variance(spread, used) / unit**2
+        covariance = self._covariance(matrices[:, places][:, :, places], variance, mean, u)
+        found.covariance[part] = np.where(bad[:, None, None], np.nan, covariance)
+
+    def _variance(
+        self, spread: NDArray[np.float64], used: NDArray[np.intp]
+    ) -> NDArray[np.float64]:  # fmt: skip
+        """(n,) variance of the reflectance as measured."""
+        if self.noise is not None:
+            return np.full(len(spread), self.noise**2)
+        spare = used - self.free.sum()
+        estimated = np.where(spare > 0, spread / np.maximum(spare, 1), NO_RESIDUAL**2)
+        return np.asarray(np.maximum(estimated, LEAST_NOISE**2))
+
+    def _covariance(
+        self, matrices: NDArray[np.float64], variance: NDArray[np.float64],
+        mean: NDArray[np.floating], u: NDArray[np.float64],
+    ) -> NDArray[np.float64]:  # fmt: skip
+        free = np.flatnonzero(self.free)
+        scale = np.maximum(variance * np.where(mean > 0, mean, 1.0), 1e-30)
+        inner = matrices[:, free][:, :, free] / scale[:, None, None]
+        inner += UNKNOWN * np.eye(len(free))
+        inverse = np.linalg.inv(inner)
+        slope = np.empty((len(u), len(free)))
+        for column, i in enumerate(free):
+            p = self.parameters[i]
+            low, high = p.low ** (1 / p.root), p.high ** (1 / p.root)
+            slope[:, column] = p.root * (low + u[:, i] * (high - low)) ** (p.root - 1)
+            slope[:, column] *= high - low
+        whole = np.zeros((len(u), len(self.parameters), len(self.parameters)))
+        whole[:, free[:, None], free] = inverse * slope[:, :, None] * slope[:, None, :]
+        return whole
+
+    def starts(
+        self, y: NDArray[np.float32], weight: NDArray[np.float32]
+    ) -> NDArray[np.float64]:  # fmt: skip
+        """(n, PARTS, every parameter) coordinates: of each part of the library, the nearest."""
+        distance = weight @ (self._spectra**2).T - 2 * (weight * y) @ self._spectra.T
+        nearest = [
+            np.flatnonzero(self._part == k)[distance[:, self._part == k].argmin(axis=1)]
+            for k in np.unique(self._part)
+        ]
+        return np.ascontiguousarray(np.swapaxes(self._library[np.array(nearest)], 0, 1))
+
+    def _make_library(
+        self,
+    ) -> tuple[NDArray[np.float64], NDArray[np.float32], NDArray[np.intp]]:
+        from scipy.stats import qmc
+
+        every, places = self.space.every_parameter, list(self.space.places)
+        u = qmc.Halton(len(places), scramble=True, rng=0).random(LIBRARY)
+        held = {**dict(self.space.tissue.fixed), **self._held}
+        for i, p in enumerate(self.parameters):
+            if p.name in held:
+                u[:, i] = p.to_coordinate(held[p.name])
+        free = [p.from_coordinate(u[:, i]) for i, p in enumerate(self.parameters)]
+        spectra = self.sampled.reflectance(np.stack(free, axis=-1))
+        library = np.empty((LIBRARY, len(every)))
+        for i, p in enumerate(every):
+            if i in places:
+                library[:, i] = u[:, places.index(i)]
+            else:
+                library[:, i] = p.to_coordinate(held[p.name])
+        part = np.zeros(LIBRARY, dtype=np.intp)
+        for bit, name in enumerate(("thickness", "eumelanin", "oxygenation")):
+            i = NAMES.index(name)
+            part += (library[:, i] > 0.5).astype(np.intp) << bit
+        return library, spectra, part
+
+
+def fit_spectra(
+    reflectance: ArrayLike,
+    wavelengths: ArrayLike,
+    tissue: Tissue = ALIAGA2022,
+    *,
+    specular: float = 0.0,
+    held: Mapping[str, float] | None = None,
+    noise: float | None = None,
+) -> SpectralFit:
+    """(n, w) reflectance, 0 to 1, at wavelengths (w,) in 380–780 nm → skins with covariance.
+
+    NaN marks what was not measured. `specular` is ρ, 0.028 for spectra of n = 1.4 with the surface
+    included; `held` gives parameters, by name, that are known; `noise` the standard deviation of a
+    reflectance, by default taken from the residual. Raises CutisError for wavelengths outside or
+    fewer than free parameters, and for values held outside their range.
+    """
+    fitter = SpectralFitter(wavelengths, tissue, specular=specular, held=held, noise=noise)
+    return fitter.fit(reflectance)
+
+
+def _free(tissue: Tissue, held: Mapping[str, float]) -> NDArray[np.bool_]:
+    """(p,) which of the tissue's parameters are to be found."""
+    names = [p.name for p in tissue.parameters]
+    for name, value in held.items():
+        if name not in names:
+            listed = ", ".join(names)
+            raise CutisError(f"{name} is not a free parameter of {tissue.name}; those are {listed}")
+        tissue.parameters[names.index(name)].check(float(value))
+    return np.array([name not in held for name in names])

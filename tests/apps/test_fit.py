@@ -1,0 +1,266 @@
+"""`cutis fit` on tables and cubes, good and bad."""
+
+import csv
+import io
+
+import numpy as np
+import pytest
+
+from cutis.albedo import albedo_space
+from cutis.albedo.sampled import SampledSpace
+from cutis.maps.files import MapsFile
+from cutis.optics import NAMES, from_coordinates, to_coordinates
+from cutis.textures import read_channels, write_channels
+
+LAM = np.arange(400.0, 701.0, 10.0)
+
+
+@pytest.fixture(scope="module")
+def skins():
+    """(12, 5) skins away from the ends of the ranges."""
+    u = np.random.default_rng(4).uniform(0.25, 0.6, (12, 5))
+    u[:, 0] *= 0.7
+    return from_coordinates(u)
+
+
+@pytest.fixture(scope="module")
+def spectra(skins):
+    """(12, 31) albedo of them."""
+    return SampledSpace(albedo_space(), LAM).reflectance(skins).astype(float)
+
+
+def write_columns(path, values, lam=LAM):
+    """A CSV with a column per spectrum."""
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(["wavelength_nm", *(f"s{i}" for i in range(len(values)))])
+        for wavelength, row in zip(lam, np.transpose(values), strict=True):
+            writer.writerow([f"{wavelength:g}", *("" if np.isnan(v) else f"{v:.8f}" for v in row)])
+    return path
+
+
+def read_skins(text):
+    """Rows of the CSV that comes out, and (n, 5) parameters."""
+    rows = list(csv.DictReader(io.StringIO(text)))
+    return rows, np.array([[float(row[name]) for name in NAMES] for row in rows])
+
+
+def near(found, skins):
+    """Whether parameters agree in coordinates."""
+    return np.abs(to_coordinates(found) - to_coordinates(skins)).max() < 0.02
+
+
+def test_columns_of_spectra_give_rows_of_skins(cutis, tmp_path, skins, spectra):
+    path = write_columns(tmp_path / "a.csv", spectra)
+    ended = cutis("fit", path, "-o", tmp_path / "skins.csv")
+    assert ended.code == 0, ended.err
+    assert "12 skins" in ended.err
+    rows, found = read_skins((tmp_path / "skins.csv").read_text("utf-8"))
+    assert near(found, skins)
+    assert [row["spectrum"] for row in rows] == [f"s{i}" for i in range(12)]
+    assert all(float(row["rmse"]) < 2e-5 for row in rows)
+    assert all(float(row[f"{name}_sigma"]) > 0 for row in rows for name in NAMES)
+    assert all(row["wavelengths"] == "31" for row in rows)
+
+
+def test_what_cutis_spectrum_prints_is_understood(cutis, tmp_path):
+    made = cutis("spectrum", "--melanin", 0.05, "--blood", 0.01, "--thickness", 90)
+    (tmp_path / "one.csv").write_text(made.out, encoding="utf-8")
+    ended = cutis("fit", tmp_path / "one.csv", "-q")
+    assert ended.err == ""
+    _, found = read_skins(ended.out)
+    assert near(found, np.array([[0.05, 0.01, 90, 0.7, 0.7]]))
+
+
+def test_rows_keep_their_labels_and_correlations_are_asked_for(cutis, tmp_path, skins, spectra):
+    lines = [",".join(["subject", *(f"R_{lam:g}" for lam in LAM), "site"])]
+    lines += [
+        ",".join([f"p{i}", *(f"{v:.8f}" for v in row), "cheek"]) for i, row in enumerate(spectra)
+    ]
+    (tmp_path / "a.csv").write_text("\n".join(lines), encoding="utf-8")
+    ended = cutis("fit", tmp_path / "a.csv", "--correlations", "-q")
+    rows, found = read_skins(ended.out)
+    assert near(found, skins)
+    assert [row["subject"] for row in rows] == [f"p{i}" for i in range(12)]
+    assert list(rows[0])[:2] == ["subject", "site"]
+    assert abs(float(rows[0]["melanin_thickness_correlation"])) <= 1
+    assert sum(name.endswith("_correlation") for name in rows[0]) == 10
+
+
+def test_specular_part_and_held_parameters(cutis, tmp_path, skins, spectra):
+    path = write_columns(tmp_path / "a.csv", 0.028 + 0.972 * spectra)
+    ended = cutis("fit", path, "--specular", 0.028)
+    assert "surface reflection 0.028" in ended.err
+    assert near(read_skins(ended.out)[1], skins)
+    ended = cutis("fit", path, "--specular", 0.028, "--oxygenation", 0.5)
+    rows, found = read_skins(ended.out)
+    assert (found[:, NAMES.index("oxygenation")] == 0.5).all()
+    assert all(float(row["oxygenation_sigma"]) == 0 for row in rows)
+
+
+def test_range_leaves_wavelengths_out(cutis, tmp_path, skins, spectra):
+    wide = np.concatenate([LAM, [800.0, 900.0]])
+    values = np.hstack([spectra, np.full((12, 2), 0.9)])
+    path = write_columns(tmp_path / "a.csv", values, wide)
+    ended = cutis("fit", path)
+    assert "2 of 33 wavelengths outside 380 to 780 nm left out" in ended.err
+    assert near(read_skins(ended.out)[1], skins)
+    ended = cutis("fit", path, "--range", "450,650")
+    assert read_skins(ended.out)[0][0]["wavelengths"] == "21"
+
+
+def test_percent_gaps_and_negative_values_are_announced(cutis, tmp_path, skins, spectra):
+    values = 100 * spectra
+    values[0, 3], values[1, 4], values[2, 5] = np.nan, -0.2, 180.0
+    ended = cutis("fit", write_columns(tmp_path / "a.csv", values))
+    for words in ("percent", "1 values are negative", "1 values are above 1.2", "1 values are mis"):
+        assert words in ended.err
+    rows, found = read_skins(ended.out)
+    assert [row["wavelengths"] for row in rows[:4]] == ["30", "30", "30", "31"]
+    assert near(found, skins)
+
+
+def test_micrometres_are_announced(cutis, tmp_path, skins, spectra):
+    ended = cutis("fit", write_columns(tmp_path / "a.csv", spectra, LAM / 1000))
+    assert "micrometres" in ended.err
+    assert near(read_skins(ended.out)[1], skins)
+
+
+@pytest.mark.parametrize(
+    ("change", "arguments", "words"),
+    [
+        (lambda y, lam: (y[:, :4], lam[:4]), [], "too few for 5 free parameters"),
+        (lambda y, lam: (y, lam * 10), [], "are they in nm"),
+        (lambda y, lam: (y * 6000, lam), [], "--scale"),
+        (lambda y, lam: (-y, lam), [], "no value above 0"),
+        (lambda y, lam: (np.full_like(y, np.nan), lam), [], "no value above 0"),
+        (lambda y, lam: (np.where(np.arange(31) < 27, np.nan, y), lam), [], "s0 has 4 usable"),
+        (lambda y, lam: (y, lam), ["--range", "700,400"], "--range takes"),
+        (lambda y, lam: (y, lam), ["--range", "visible"], "--range takes"),
+        (lambda y, lam: (y, lam), ["--range", "100,200"], "are outside"),
+        (lambda y, lam: (y, lam), ["--specular", "3"], "specular"),
+        (lambda y, lam: (y, lam), ["--blood", "3"], "outside its range"),
+        (lambda y, lam: (y, lam), ["--noise", "0"], "noise"),
+        (lambda y, lam: (y, lam), ["--scale", "0"], "scale"),
+        (lambda y, lam: (y, lam), ["-o", "skins.txt"], "end its name in .csv"),
+        (lambda y, lam: (y, lam), ["-o", "absent/skins.csv"], "does not exist"),
+    ],
+)
+def test_bad_input_is_one_line(cutis, tmp_path, monkeypatch, spectra, change, arguments, words):
+    monkeypatch.chdir(tmp_path)
+    path = write_columns(tmp_path / "a.csv", *change(spectra, LAM))
+    ended = cutis("fit", path, *arguments, "-q")
+    assert ended.code == 1
+    assert words in ended.err
+    assert ended.err.count("\n") == 1
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["a.csv"]
+
+
+def test_the_spectra_themselves_are_not_overwritten(cutis, tmp_path, spectra):
+    path = write_columns(tmp_path / "a.csv", spectra)
+    before = path.read_bytes()
+    assert "write to another name" in cutis("fit", path, "-o", path).err
+    assert path.read_bytes() == before
+
+
+@pytest.fixture
+def write_cube(write_envi, tmp_path, spectra):
+    """`write_cube(kind)` writes a 3 × 4 cube of the spectra; path, and arguments for it."""
+
+    def write(kind, values=None):
+        values = (spectra if values is None else values).reshape(3, 4, -1)
+        if kind == "exr":
+            names = [f"T.{lam:g},000000nm" for lam in LAM]
+            channels = {name: values[..., i] for i, name in enumerate(names)}
+            write_channels(tmp_path / "face.exr", channels)
+            return tmp_path / "face.exr", []
+        if kind == "npy":
+            np.save(tmp_path / "face.npy", values)
+            np.savetxt(tmp_path / "w.txt", LAM)
+            return tmp_path / "face.npy", ["--wavelengths", tmp_path / "w.txt"]
+        listed = "{" + ",".join(f"{lam:g}" for lam in LAM) + "}"
+        return write_envi(tmp_path / "face.hdr", values, kind, wavelength=listed), []
+
+    return write
+
+
+@pytest.mark.parametrize("kind", ["exr", "npy", "bsq", "bil", "bip"])
+def test_cubes_become_maps(cutis, write_cube, tmp_path, monkeypatch, skins, kind):
+    monkeypatch.setattr("cutis.textures.spectral_cube.TEXELS", 4)  # a row at a time
+    path, arguments = write_cube(kind)
+    ended = cutis("fit", path, *arguments, "-o", tmp_path / "face.skin.exr")
+    assert ended.code == 0, ended.err
+    assert "12 skins" in ended.err
+    with MapsFile(tmp_path / "face.skin.exr") as file:
+        assert near(file.rows(slice(0, 3)).parameters().reshape(12, 5), skins)
+    channels, metadata = read_channels(tmp_path / "face.skin.exr")
+    assert all((channels[f"{name}.sigma"] > 0).all() for name in NAMES)
+    assert channels["rmse"].max() < 2e-5
+    assert metadata["cutis:specular"] == "0"
+    assert cutis("info", tmp_path / "face.skin.exr").code == 0
+
+
+def test_texels_without_spectrum_are_outside_the_mask(cutis, write_cube, tmp_path, spectra):
+    values = 100 * spectra
+    values[0], values[5], values[7, 4:] = 0.0, np.nan, np.nan
+    values[9, 2] = 1e6
+    path, arguments = write_cube("bil", values)
+    ended = cutis("fit", path, *arguments, "-o", tmp_path / "face.skin.exr")
+    for words in ("percent", "3 texels without a spectrum", "1 values are above 1.2", "9 skins"):
+        assert words in ended.err
+    channels, _ = read_channels(tmp_path / "face.skin.exr")
+    mask = channels["mask"].ravel()
+    assert np.flatnonzero(mask == 0).tolist() == [0, 5, 7]
+    assert all(np.isfinite(values).all() for values in channels.values())
+
+
+def test_a_cubes_scale_is_that_of_its_header_or_given(
+    cutis, write_envi, tmp_path, skins, spectra
+):  # fmt: skip
+    listed = "{" + ",".join(f"{lam:g}" for lam in LAM) + "}"
+    stored = np.rint(spectra * 50000).reshape(3, 4, -1)
+    fields = {"wavelength": listed, "reflectance scale factor": 50000}
+    path = write_envi(tmp_path / "a.hdr", stored, dtype="<u2", **fields)
+    out = tmp_path / "a.skin.exr"
+    assert "50000 means 1" in cutis("fit", path, "-o", out).err
+    with MapsFile(out) as file:
+        assert near(file.rows(slice(0, 3)).parameters().reshape(12, 5), skins)
+    path = write_envi(tmp_path / "b.hdr", stored, dtype="<u2", wavelength=listed)
+    assert "--scale" in cutis("fit", path, "-o", out).err
+    assert cutis("fit", path, "--scale", 50000, "-o", out).code == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ([], "-o NAME.skin.exr"),
+        (["-o", "a.csv"], "-o NAME.skin.exr"),
+        (["-o", "absent/a.exr"], "does not exist"),
+        (["-o", "face.exr"], "the cube itself"),
+        (["-o", "a.exr", "--wavelengths", "face.exr"], "is no"),
+        (["-o", "a.exr", "--range", "400,430"], "too few"),
+    ],
+)
+def test_bad_cubes_are_one_line(cutis, write_cube, tmp_path, monkeypatch, arguments, words):
+    monkeypatch.chdir(tmp_path)
+    path, _ = write_cube("exr")
+    ended = cutis("fit", path.name, *arguments, "-q")
+    assert ended.code == 1
+    assert words in ended.err
+    assert ended.err.count("\n") == 1
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["face.exr"]
+
+
+def test_a_cube_of_nothing(cutis, write_cube, tmp_path, spectra):
+    path, arguments = write_cube("npy", np.full_like(spectra, np.nan))
+    ended = cutis("fit", path, *arguments, "-o", tmp_path / "a.exr")
+    assert (ended.code, ended.err.count("\n")) == (1, 1)
+    assert not (tmp_path / "a.exr").exists()
+
+
+def test_a_colour_texture_is_no_cube(cutis, write_face, tmp_path):
+    ended = cutis("fit", write_face(tmp_path, "exr"), "-o", tmp_path / "a.exr")
+    assert "cutis estimate" in ended.err
+    ended = cutis("fit", write_face(tmp_path, "png8"), "-o", tmp_path / "a.exr")
+    assert ended.code == 1
+    assert "ENVI" in ended.err
