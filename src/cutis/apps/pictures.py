@@ -206,8 +206,10 @@ def _recipe(order: Order, skin: "Skin") -> dict[str, Any]:
     from importlib.metadata import version
 
     from cutis.maps.files import digest
+    from cutis.render.cycles import INDEX, METHOD, facing
+    from cutis.render.medium import mean_free_path
 
-    scene = order.scene
+    scene, g = order.scene, order.scene.anisotropy
     job = scene.job(Path("picture.exr"))
     for machine in ("output", "device", "base_colour", "turn"):
         del job[machine]
@@ -229,6 +231,7 @@ def _recipe(order: Order, skin: "Skin") -> dict[str, Any]:
         "edited": [str(edit) for edit in order.edits],
         "amount": order.amount,
         "radius": order.radius,
+        "medium": [METHOD, INDEX, *facing(g), *mean_free_path(g).tolist()],
         "model_only": order.model_only,
         "colorspace": order.colorspace,
         "ocio": order.ocio,

@@ -5,10 +5,12 @@ albedo (`inversion`); its lengths follow from the tissue. By similarity, media o
 scattering μs′ = (1 − g) μs spread light alike, so that the mean free path of a walk with
 anisotropy g is (1 − g) times that of an isotropic one: 1/μs′ at g = 0.
 
-Bands are means over wavelengths under D65 with the positive part of sRGB's matching functions as
-weights, those of light that a band gains from. `of_maps` adds what the dermis absorbs,
-1 / (μs′ + μa): light spreads there, while the epidermis, thinner than a mean free path, filters
-what goes through and spreads it little, so that melanin shortens no path here.
+Bands are linear sRGB of the lengths as if they were a reflectance under D65, with its negative
+lobes: distances scale with the mean free path, and RGB is linear in the spectrum of what arrives at a
+distance. Cut at 0, the weights would make red a tenth too narrow. What comes out is put back into
+the range of the spectrum. `of_maps` adds what the dermis absorbs, 1 / (μs′ + μa): light spreads
+there, while the epidermis, thinner than a mean free path, filters what goes through and spreads it
+little, so that melanin shortens no path here.
 """
 
 from functools import lru_cache
@@ -28,19 +30,13 @@ BLOOD, OXYGENATION = 65, 17
 """Nodes of the table over blood (equal steps of its fourth root) and oxygenation."""
 
 
-def band_weights() -> NDArray[np.float64]:
-    """(41, 3) weights of `WAVELENGTHS` in red, green and blue; each column sums to 1."""
-    gained = np.clip(spectrum_to_rgb(WAVELENGTHS), 0, None)
-    return np.asarray(gained / gained.sum(axis=0))
-
-
 def mean_free_path(anisotropy: float = 0.0, tissue: Tissue = ALIAGA2022) -> NDArray[np.float64]:
     """(3,) mean free path in mm of red, green and blue, from the dermis' reduced scattering.
 
     `anisotropy` is the g that the renderer walks with.
     """
     scattering = tissue.reduced_scattering(WAVELENGTHS) * tissue.dermis_scattering
-    return (1 - anisotropy) * (PER_CM / scattering) @ band_weights()
+    return (1 - anisotropy) * _bands(PER_CM / scattering)
 
 
 def mean_free_path_in(
@@ -52,7 +48,7 @@ def mean_free_path_in(
     """(..., 3) the same in mm with the absorption of a dermis of `blood`, `oxygenation` (...)."""
     scattering = tissue.reduced_scattering(WAVELENGTHS) * tissue.dermis_scattering
     absorption = tissue.dermis_absorption(blood, oxygenation, WAVELENGTHS)
-    return np.asarray((1 - anisotropy) * (PER_CM / (scattering + absorption)) @ band_weights())
+    return (1 - anisotropy) * _bands(PER_CM / (scattering + absorption))
 
 
 def of_maps(
@@ -70,6 +66,12 @@ def of_maps(
     found *= np.float32(1 - anisotropy)
     found[skin.mask <= 0] = mean_free_path(anisotropy, tissue)
     return found
+
+
+def _bands(lengths: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(..., 41) lengths → (..., 3) of red, green and blue."""
+    low, high = lengths.min(axis=-1, keepdims=True), lengths.max(axis=-1, keepdims=True)
+    return np.clip(lengths @ spectrum_to_rgb(WAVELENGTHS), low, high)
 
 
 @lru_cache(maxsize=8)
