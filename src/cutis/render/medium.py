@@ -6,11 +6,11 @@ scattering μs′ = (1 − g) μs spread light alike, so that the mean free path
 anisotropy g is (1 − g) times that of an isotropic one: 1/μs′ at g = 0.
 
 Bands are linear sRGB of the lengths as if they were a reflectance under D65, with its negative
-lobes: distances scale with the mean free path, and RGB is linear in the spectrum of what arrives at a
-distance. Cut at 0, the weights would make red a tenth too narrow. What comes out is put back into
-the range of the spectrum. `of_maps` adds what the dermis absorbs, 1 / (μs′ + μa): light spreads
-there, while the epidermis, thinner than a mean free path, filters what goes through and spreads it
-little, so that melanin shortens no path here.
+lobes: distances scale with the mean free path, and RGB is linear in the spectrum of what arrives
+at a distance. Cut at 0, the weights would make red a tenth too narrow. What comes out is put back
+into the range of the spectrum. `of_maps` adds what the dermis absorbs, 1 / (μs′ + μa): light
+spreads there, while the epidermis, thinner than a mean free path, filters what goes through and
+spreads it little, so that melanin shortens no path here.
 """
 
 from functools import lru_cache
