@@ -56,16 +56,22 @@ def test_radii_undo_the_dipole():
 
 
 def test_facing_takes_back_what_depends_on_the_view():
-    """At g = 0, for albedos of skin and views up to 84°, by the solver."""
+    """At g = 0, for albedos from the darkest skin on and views up to 84°, by the solver.
+
+    What is least well taken back lies near 0.04, where Cycles begins to scale.
+    """
     k, h = facing()
-    cosines, albedos = np.linspace(0.1, 1, 10), np.array([0.03, 0.1, 0.3, 0.5, 0.7])
+    assert min(h) >= 0  # what a curve of Blender can hold
+    assert max(h) == 1
+    cosines = np.array([0.1, 0.2, 0.4, 0.7, 1.0])
+    albedos = np.concatenate([np.linspace(0.004, 0.06, 57), np.linspace(0.07, 0.88, 28)])
     alpha, seen = seen_albedo(cosines)
-    for cosine, row in zip(cosines, seen, strict=True):
-        colour = base_colour(albedos)
-        there = np.polynomial.polynomial.polyval(cosine, k)
-        fed = colour * (1 + there * np.polynomial.polynomial.polyval(colour, h))
+    colour = base_colour(albedos)
+    of_colour = np.interp(np.sqrt(colour), np.linspace(0, 1, len(h)), h)
+    for cosine, row, most in zip(cosines, seen, (0.015, 0.01, 0.007, 0.005, 0.005), strict=True):
+        fed = colour * (1 + np.polynomial.polynomial.polyval(cosine, k) * of_colour)
         found = np.interp(wrenninge2017(fed), alpha, row)
-        np.testing.assert_allclose(found, albedos, rtol=0.012 if cosine > 0.15 else 0.03)
+        np.testing.assert_allclose(found, albedos, rtol=most)
 
 
 def test_single_precision_stays():
@@ -84,7 +90,12 @@ def test_values_out_of_range_are_refused():
 
 @pytest.mark.slow
 def test_patches_of_skin_return_the_albedo_asked_for(blender, tmp_path):
-    """24 skins from very light to very dark, square on: within 1 %, noise apart."""
+    """24 skins from very light to very dark, square on: within 1 %, noise apart.
+
+    Each of them, and in each channel all of the darker and of the lighter half together, whose
+    noise is a tenth of a per cent. Lengths are five times as long as in skin so that Blender 4.2
+    walks too.
+    """
     melanin = (0.003, 0.01, 0.02, 0.04, 0.08, 0.15, 0.3, 0.6)
     skins = [(m, b, 100.0, 0.7, 0.75) for m in melanin for b in (0.002, 0.02, 0.08)]
     tones = albedo_space().rgb(np.array(skins))
@@ -94,14 +105,21 @@ def test_patches_of_skin_return_the_albedo_asked_for(blender, tmp_path):
         lengths = radius(colour, mean_free_path())
         scene = Scene(
             mesh="patch", light="furnace", specular=0.0, denoise=False, width=40, height=40,
-            samples=48, method=METHOD, subsurface_ior=INDEX, facing=facing(), device="cpu",
-            base_colour=tuple(map(float, colour)), radius=tuple(map(float, lengths)),
+            samples=64, seed=number, method=METHOD, subsurface_ior=INDEX, facing=facing(),
+            base_colour=tuple(map(float, colour)), radius=tuple(map(float, lengths)), scale=5.0,
+            device="cpu",
         )  # fmt: skip
         pictures.append((scene, tmp_path / f"{number}.exr"))
     render(pictures, blender)
-    bound = norm.isf(LEVEL / (2 * tones.size))
-    for (_, path), albedo in zip(pictures, tones, strict=True):
-        pixels = read_texture(path).linear().reshape(-1, 3).astype(float)
-        error = pixels.std(axis=0, ddof=1) / np.sqrt(len(pixels))
-        assert (error < 0.008 * albedo).all()
-        assert (np.abs(pixels.mean(axis=0) - albedo) < 0.01 * albedo + bound * error).all(), albedo
+    pixels = np.stack([read_texture(path).linear().reshape(-1, 3) for _, path in pictures])
+    off = pixels.mean(axis=1, dtype=float) / tones - 1
+    error = pixels.std(axis=1, ddof=1, dtype=float) / np.sqrt(pixels.shape[1]) / tones
+    assert (error > 0).all(), "no walk: the same light in all pixels"
+    for channel, order in enumerate(np.argsort(tones, axis=0).T):
+        for some in np.split(order, 2):
+            weight = error[some, channel] ** -2
+            together, noise = weight @ off[some, channel] / weight.sum(), weight.sum() ** -0.5
+            assert noise < 0.002
+            assert abs(together) < 0.01 + norm.isf(LEVEL / 12) * noise, (channel, together)
+    beyond = (np.abs(off) - 0.01) / error
+    assert beyond.max() < norm.isf(LEVEL / (2 * tones.size)), tones[beyond.max(axis=1).argmax()]

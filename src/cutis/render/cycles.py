@@ -15,7 +15,11 @@ So base colours are found by the exact solver with these habits (`walked_albedo`
 and the dipole is undone (`radius`). Diffuse albedos above 0.92 are out of reach.
 Light that enters refracted runs steeper where it is seen square on, shallower at the rim: the
 albedo seen depends on the view by −10 to +30 % on the darkest skin. `facing` takes that back in
-the material, as a factor 1 + k(cos) h(c) of the colour with two cubics, fitted to the exact solver.
+the material, as a factor 1 + k(cos) h(c) of the colour, a cubic and a table from the exact solver.
+
+All this from Blender 4.4 on. 4.2 and 4.3 do not walk at all in channels whose radius is less than a
+quarter of a pixel, but return c as a Lambertian surface does: up to a tenth too much on dark skin
+seen from afar. Up to 4.5, light of second bounces is Lambertian too.
 
 Other methods are no better: *Random Walk* refracts everything, at the roughness of the gloss, and
 changed its fit and its radius in 5.2.
@@ -40,6 +44,10 @@ INDEX = 1.4
 """Subsurface index of refraction that Cycles is given."""
 STEPS = 1 << 13
 """Equal steps of the root of diffuse albedo in the table of base colours."""
+TABLED = 64
+"""Steps of the correction for the view."""
+DARKEST, BRIGHTEST = 0.003, 0.88
+"""Diffuse albedos from and to which the correction for the view is solved for."""
 BISECTIONS = 12
 LEAST_ALPHA = 0.2
 MOST_EVENTS = 255
@@ -75,29 +83,32 @@ def radius(colour: ArrayLike, reduced_mean_free_path: ArrayLike) -> NDArray[np.f
 
 @lru_cache(maxsize=16)
 def facing(anisotropy: float = 0.0) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Cubics k of the cosine of the view and h of the base colour, from the constant upwards.
+    """Cubic k of the cosine of the view, from the constant upwards, and table h of the base colour.
 
-    The colour c seen at that cosine is to be c (1 + k h). Raises CutisError for anisotropies that
-    Cycles cannot walk with.
+    The colour c seen at that cosine is to be c (1 + k h); h is given at TABLED + 1 equal steps of
+    √c from 0 to 1, because it bends sharply where Cycles begins to scale. Raises CutisError for
+    anisotropies that Cycles cannot walk with.
     """
     check_anisotropy(anisotropy)
-    cosines, albedos = np.linspace(0.1, 1, 19), np.linspace(0.005, 0.88, 60)
-    alpha, seen = seen_albedo(cosines, anisotropy)
+    cosines, root = np.linspace(0.1, 1, 19), np.linspace(0, 1, TABLED + 1)
     fine = np.linspace(0, 1, 16 * STEPS + 1) ** 2
     fitted = np.maximum.accumulate(wrenninge2017(fine, anisotropy))
-    colour = np.asarray(base_colour(albedos, anisotropy), dtype=np.float64)
+    albedo = walked_albedo(np.minimum(np.interp(root**2, fine, fitted), 1), anisotropy)
+    inner = (albedo > DARKEST) & (albedo < BRIGHTEST)
+    alpha, seen = seen_albedo(cosines, anisotropy)
     wanted = np.stack([
-        np.interp(np.interp(albedos, *_increasing(row, alpha)), fitted, fine) / colour - 1
-        for row in seen
-    ])  # fmt: skip
+        np.interp(np.interp(albedo[inner], *_increasing(row, alpha)), fitted, fine) for row in seen
+    ]) / root[inner] ** 2 - 1  # fmt: skip
     # views count as often as they occur on a sphere, changes of dark colours by what they are
-    weight = np.sqrt(cosines)[:, None]
-    left, values, right = np.linalg.svd(weight * wanted)
-    k = np.polynomial.polynomial.polyfit(
-        cosines, left[:, 0] * values[0] / weight[:, 0], 3, w=np.sqrt(cosines)
-    )
-    h = np.polynomial.polynomial.polyfit(colour, right[0], 3)
-    return tuple(float(v) for v in k), tuple(float(v) for v in h)
+    weight = np.sqrt(cosines)
+    left, values, _ = np.linalg.svd(weight[:, None] * wanted)
+    k = np.polynomial.polynomial.polyfit(cosines, left[:, 0] * values[0] / weight, 3, w=weight)
+    view = cosines * np.polynomial.polynomial.polyval(cosines, k)
+    h = view @ wanted / (view @ np.polynomial.polynomial.polyval(cosines, k))
+    # below the darkest like it; of white all is seen at every view
+    table = np.interp(root, [*root[inner], 1.0], [*h, 0.0])
+    largest = np.abs(table).max()
+    return tuple(float(v) for v in largest * k), tuple(float(v) for v in table / largest)
 
 
 def walked_albedo(alpha: ArrayLike, anisotropy: float = 0.0) -> Array:

@@ -30,11 +30,12 @@ class Scene:
     What it is made of
         base_colour: what Cycles is given as the colour of the surface, 0–1, linear Rec.709;
         radius: what it is given as subsurface radius, mm, times `scale`; anisotropy: 0–0.99;
-        subsurface_ior: 1.01–3.8, used by `random_walk_skin` alone; facing: two cubics k and h, the
-        base colour c becomes c (1 + k(cosine of the view) h(c)). `cutis.render.cycles` says which
-        of them bring back a wanted albedo. specular: share of the surface's reflection, 0–1:
-        two GGX lobes at index 1.4 [walter2007], 85 % of 0.75 times the roughness and 15 % of 1.30
-        times [unreal2022]; roughness: 0–1, or a file; normal: a tangent-space normal map.
+        subsurface_ior: 1.01–3.8, used by `random_walk_skin` alone; facing: a cubic k and a table
+        h at equal steps of √c, 0 to 1, the base colour c becomes c (1 + k(cosine of the view)
+        h(c)). `cutis.render.cycles` says which of them bring back a wanted albedo. specular: share
+        of the surface's reflection, 0–1: two GGX lobes at index 1.4 [walter2007], 85 % of 0.75
+        times the roughness and 15 % of 1.30 times [unreal2022]; roughness: 0–1, or a file; normal:
+        a tangent-space normal map.
     What is seen
         mesh: one of `MESHES` or a file in one of `FORMATS`, +Y up, the face towards +Z in files
         of OBJ and glTF; millimetres_per_unit: of the file, None to take it for a head 240 mm high;

@@ -378,22 +378,35 @@ def new_material(name):
 
 
 def faced(nodes, colour, of_view, of_colour):
-    """The colour c as c (1 + k h), k a cubic of the cosine of the view, h one of c."""
+    """The colour c as c (1 + k h): k a cubic of the cosine of the view, h a table over √c."""
     if isinstance(colour, list):
         colour = nodes.add("ShaderNodeCombineXYZ", dict(enumerate(colour))).outputs[0]
     place = nodes.add("ShaderNodeNewGeometry").outputs
     view = {0: place["Normal"], 1: place["Incoming"]}
     cosine = nodes.add("ShaderNodeVectorMath", view, operation="DOT_PRODUCT").outputs["Value"]
     cosine = nodes.add("ShaderNodeMath", {0: cosine}, operation="ABSOLUTE").outputs[0]
-    k, h = of_view[3], [of_colour[3]] * 3
-    for a, b in zip(of_view[2::-1], of_colour[2::-1], strict=True):
+    k = of_view[3]
+    for a in of_view[2::-1]:
         k = nodes.add("ShaderNodeMath", {0: k, 1: cosine, 2: a}, operation="MULTIPLY_ADD")
         k = k.outputs[0]
-        step = {0: h, 1: colour, 2: [b] * 3}
-        h = nodes.add("ShaderNodeVectorMath", step, operation="MULTIPLY_ADD").outputs[0]
+    h = curves(nodes, colour, [(i / (len(of_colour) - 1)) ** 2 for i in range(len(of_colour))],
+               of_colour)  # fmt: skip
     change = nodes.add("ShaderNodeVectorMath", {0: h, "Scale": k}, operation="SCALE").outputs[0]
     changed = {0: colour, 1: change, 2: colour}
     return nodes.add("ShaderNodeVectorMath", changed, operation="MULTIPLY_ADD").outputs[0]
+
+
+def curves(nodes, colour, x, y):
+    """The same piecewise linear function, of values from 0 to 1, of each channel."""
+    node = nodes.add("ShaderNodeRGBCurve", {"Color": colour})
+    points = node.mapping.curves[3].points  # of all channels
+    points[0].location, points[1].location = (x[0], y[0]), (x[-1], y[-1])
+    for place in zip(x[1:-1], y[1:-1], strict=True):
+        points.new(*place)
+    for point in points:
+        point.handle_type = "VECTOR"
+    node.mapping.update()
+    return node.outputs[0]
 
 
 def skin_material(picture, textures):
