@@ -160,8 +160,8 @@ def test_file_opens_as_the_picture_that_cutis_renders(blender, tmp_path, changes
 
     a, b = pixels(moved / "ours.exr"), pixels(moved / "theirs.exr")
     assert a.mean() > 0.1
-    # At another scale rays round differently, and some take another way.
-    assert b.mean(axis=(0, 1)) == pytest.approx(a.mean(axis=(0, 1)), rel=1e-3)
+    # At another scale rays round differently, and some take another way: noise, also in the mean.
+    assert b.mean(axis=(0, 1)) == pytest.approx(a.mean(axis=(0, 1)), rel=SAME)
     assert np.abs(a - b).mean() < SAME * a.mean()
     if material.millimetres == 1000:  # the unit that pictures are made in
         np.testing.assert_allclose(a, b, rtol=1e-5, atol=1e-6)
