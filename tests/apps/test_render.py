@@ -67,6 +67,21 @@ def test_a_bundled_head_and_its_credit(blender, cutis, tmp_path):
     assert a > 5
 
 
+def test_maps_of_a_bundled_head_keep_its_credit(blender, cutis, tmp_path):
+    from cutis.render.heads import head
+    from cutis.render.skin import Skin
+
+    skin = package.estimate(package.read(head("leeperrysmith").albedo))
+    skin.save(tmp_path / "scan.skin.exr")
+    with Skin(tmp_path / "scan.skin.exr", model_only=True) as opened:
+        assert head("leeperrysmith").albedo.resolve() in [p.resolve() for p in opened.origins()]
+    out = tmp_path / "ball.png"
+    ended = cutis("render", tmp_path / "scan.skin.exr", "--model-only", *SMALL, "-o", out)
+    assert ended.code == 0
+    assert "Lee Perry-Smith" in ended.out
+    assert "CC BY 3.0" in read_texture(out).spec.getattribute("Copyright")
+
+
 def test_more_melanin_is_darker(blender, cutis, maps, tmp_path):
     ended = cutis(
         "render", maps, *SMALL, "--mesh", "patch", "--edit-sweep", "melanin", "0.5..8",
@@ -115,7 +130,14 @@ def test_a_sequence_goes_on_where_it_stopped(blender, cutis, maps, tmp_path):
         assert (tmp_path / name).read_bytes() == content
     whole = sorted([*names, "turn.frames.json", "turn.webp"])
     assert sorted(path.name for path in tmp_path.iterdir()) == whole
+    film = (tmp_path / "turn.webp").read_bytes()
     assert "6 pictures were there already" in cutis(*arguments).out
+    assert (tmp_path / "turn.webp").read_bytes() == film
+    (tmp_path / "turn.webp").write_bytes(b"old")  # of a run that was stopped before it
+    log = tmp_path / "turn.frames.json"
+    log.write_text(log.read_text().replace("turn.webp", "other.webp"))
+    assert "6 pictures were there already" in cutis(*arguments).out
+    assert (tmp_path / "turn.webp").read_bytes() == film
     assert "6 pictures" not in cutis(*arguments, "--seed", "4").out.partition("wrote")[0]
 
 

@@ -1,9 +1,11 @@
 """Pictures of one skin: its textures written for Cycles, rendered, and put under their names."""
 
+import hashlib
 import os
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -86,12 +88,14 @@ def render_pictures(order: Order, blender: "Blender", progress: Progress) -> Ren
         names = [Path(name) for _, name in file_names(frames, str(stem), suffix)]
     result, log = Rendered(), Finished(Path(f"{stem}.frames.json"))
     with order.opened() as skin, tempfile.TemporaryDirectory(prefix="cutis-") as folder:
-        base = _recipe(order, skin) if sequence else {}
+        base = _recipe(order, skin, blender) if sequence else {}
         feeds = _Feeds(order, skin, Path(folder))
         recipes: dict[Path, tuple[Path, str]] = {}
+        every: list[str] = []
         todo: list[tuple[Scene, Path]] = []
         for frame, name in zip(frames, names, strict=True):
             recipe = digest(base | {"turn": frame.turn, "edits": [str(e) for e in frame.edits]})
+            every.append(recipe)
             if sequence and not order.again and log.has(name, recipe):
                 result.there.append(name)
                 continue
@@ -106,6 +110,7 @@ def render_pictures(order: Order, blender: "Blender", progress: Progress) -> Ren
             notes = {"ImageDescription": f"rendered by cutis from {order.skin.name}"}
             if order.credits:
                 notes["Copyright"] = "; ".join(order.credits)
+            log.drop(name)  # a stop between the two must not leave it under another recipe
             write_picture(texture.linear(), name, notes)
             light.unlink()
             if sequence:
@@ -114,10 +119,13 @@ def render_pictures(order: Order, blender: "Blender", progress: Progress) -> Ren
 
         result.device = render(todo, blender, progress, keep)
     if sequence:
-        result.animation = stem.with_suffix(".webp")
-        if result.written or not result.animation.is_file():
+        result.animation = Path(f"{stem}.webp")
+        film = digest({"frames": every, "suffix": suffix})
+        if not log.has(result.animation, film):
             progress(1, 1, "moving preview")
+            log.drop(result.animation)
             write_animation(names, result.animation)
+            log.put(result.animation, film)
     return result
 
 
@@ -201,7 +209,7 @@ class _Feeds:
         return written
 
 
-def _recipe(order: Order, skin: "Skin") -> dict[str, Any]:
+def _recipe(order: Order, skin: "Skin", blender: "Blender") -> dict[str, Any]:
     """All that every picture of a sequence depends on, as JSON holds it."""
     from importlib.metadata import version
 
@@ -209,6 +217,7 @@ def _recipe(order: Order, skin: "Skin") -> dict[str, Any]:
     from cutis.render.cycles import INDEX, METHOD, facing
     from cutis.render.medium import mean_free_path
 
+    script = resources.files("cutis.data").joinpath("blender", "scene.py")
     scene, g = order.scene, order.scene.anisotropy
     job = scene.job(Path("picture.exr"))
     for machine in ("output", "device", "base_colour", "turn"):
@@ -218,6 +227,8 @@ def _recipe(order: Order, skin: "Skin") -> dict[str, Any]:
         "capture": None if skin.maps is None or skin.capture is None else skin.capture.path,
         "paint": order.paint,
         "mesh": scene.mesh if isinstance(scene.mesh, Path) else None,
+        "ocio": Path(order.ocio) if order.ocio and Path(order.ocio).is_file() else None,
+        **_beside(scene.mesh),
         "normal": scene.normal,
         "roughness": scene.roughness if isinstance(scene.roughness, Path) else None,
     }
@@ -226,6 +237,8 @@ def _recipe(order: Order, skin: "Skin") -> dict[str, Any]:
         job[name] = digests.get(name, job[name])
     return {
         "version": version("cutis"),
+        "blender": blender.version,
+        "script": hashlib.sha256(script.read_bytes()).hexdigest(),
         "scene": job,
         "files": digests,
         "edited": [str(edit) for edit in order.edits],
@@ -237,6 +250,17 @@ def _recipe(order: Order, skin: "Skin") -> dict[str, Any]:
         "ocio": order.ocio,
         "first_turn": scene.turn,
     }
+
+
+def _beside(mesh: str | Path) -> dict[str, Path | None]:
+    """Files that a mesh may be stored in besides its own: buffers of glTF, layers of USD."""
+    suffixes: tuple[str, ...] = {".gltf": (".bin",)}.get(Path(mesh).suffix.lower(), ())
+    if Path(mesh).suffix.lower().startswith(".usd"):
+        suffixes = (".usd", ".usda", ".usdc")
+    if not suffixes:
+        return {}
+    there = sorted(Path(mesh).parent.iterdir())
+    return {f"beside {path.name}": path for path in there if path.suffix.lower() in suffixes}
 
 
 def check_fit(order: Order, ratio: float, head: str) -> None:

@@ -105,6 +105,8 @@ def render(
 
     Example: cutis render out/face.skin.exr --mesh head.obj --melanin x1.5 -o tanned.png
     """
+    from dataclasses import replace
+
     from cutis.apps.console import out, steps
     from cutis.apps.pictures import RADII, Order, check_fit, export_to, render_pictures
     from cutis.errors import CutisError
@@ -158,8 +160,9 @@ def render(
         edits=tuple(options.edits(preset, melanin, blood, thickness, eumelanin, oxygenation)),
         amount=amount, paint=mask, source=source, model_only=model_only, colorspace=colorspace,
         ocio=ocio, radius=radius, frames=sequence, again=again,
-        credits=credits_of(scene.mesh, skin),
     )  # fmt: skip
+    with order.opened() as opened:
+        order = replace(order, credits=credits_of(scene.mesh, *opened.origins()))
     if head is not None:
         with TextureFile(head.albedo) as texture:
             check_fit(order, texture.shape[1] / texture.shape[0], head.name)

@@ -35,8 +35,16 @@ class Finished:
         """Whether `picture` is there and was made by this recipe."""
         return picture.is_file() and self._digests.get(picture.name) == recipe
 
+    def drop(self, picture: Path) -> None:
+        """Forgets `picture`, before it is written anew."""
+        if self._digests.pop(picture.name, None) is not None:
+            self._write()
+
     def put(self, picture: Path, recipe: str) -> None:
         """Notes that `picture` has been written."""
         self._digests[picture.name] = recipe
+        self._write()
+
+    def _write(self) -> None:
         with replacing(self.path) as partial:
             partial.write_text(json.dumps(self._digests, indent=1) + "\n", encoding="utf-8")

@@ -47,6 +47,8 @@ def edit_sweep(name: str, text: str, count: int) -> list[Frame]:
         if found is None:
             raise ValueError
         first, last = float(found[2]), float(found[3])
+        if not np.isfinite([first, last]).all():
+            raise ValueError
     except ValueError:
         raise CutisError(
             f"--edit-sweep {name} {text!r}: give factors like 0.5..3, offsets like +0..0.1 or "

@@ -54,12 +54,12 @@ class Material:
     `albedo` is the texture of diffuse albedo (linear Rec.709), which renderers invert themselves;
     `single_scattering` that of the medium's single-scattering albedo, for those that do not.
     `radius` is the mean free path in mm of red, green and blue, where `radius_texture` (in mm too)
-    is given its mean. `anisotropy` is the g of the Henyey–Greenstein phase function that belongs to
-    both. `cycles_colour` and `cycles_radius` (mm) are textures for Cycles alone, with which its
+    is given its mean. `anisotropy` is the g of the Henyey–Greenstein phase function that belongs
+    to both. `cycles_colour` and `cycles_radius` (mm) are textures for Cycles alone, with which its
     walk returns the albedo. `millimetres` is the length of one unit of the scene. `normal` is a
     tangent-space normal map and `roughness` a grey map that the roughness of both lobes is in
-    proportion to (see `NEUTRAL`). File names are relative to the folder of the material; of a UDIM
-    set they hold <UDIM>. Raises CutisError for lengths that are not positive and g outside −1 to 1.
+    proportion to (see `NEUTRAL`). File names are relative to the folder of the material. Raises
+    CutisError for lengths that are not positive and g outside −1 to 1.
     """
 
     name: str

@@ -76,7 +76,7 @@ def export_material(
             **({} if skin.maps is None else {"model": skin.maps.model}),
             "edits": [*_earlier(skin), *(f"{edit}" + _share(amount) for edit in edits)],
         },
-        credits=credits_of(*_origins(skin)),
+        credits=credits_of(*skin.origins()),
     )
     description, document = folder / f"{name}.material.json", folder / f"{name}.mtlx"
     write_description(material, description)
@@ -107,11 +107,3 @@ def _earlier(skin: Skin) -> tuple[str, ...]:
 
 def _share(amount: float) -> str:
     return f", amount {amount:g}" if amount < 1 else ""
-
-
-def _origins(skin: Skin) -> list[Path]:
-    """The files that a skin was made from, there or not."""
-    found = [skin.path, *([] if skin.capture is None else [skin.capture.path])]
-    if skin.maps is not None and "source" in skin.maps.provenance:
-        found.append(skin.path.parent / skin.maps.provenance["source"])
-    return found

@@ -1,16 +1,17 @@
 """How far light goes in the medium that a renderer walks in: its mean free path per RGB band.
 
 A homogeneous medium stands for the layers. Its single-scattering albedo follows from the diffuse
-albedo (`inversion`); its lengths follow from the tissue. By similarity, media of equal reduced
-scattering μs′ = (1 − g) μs spread light alike, so that the mean free path of a walk with
-anisotropy g is (1 − g) times that of an isotropic one: 1/μs′ at g = 0.
+albedo (`inversion`); its lengths follow from the tissue. By similarity, to leading order as
+absorption vanishes, media of equal reduced scattering μs′ = (1 − g) μs spread light alike, so that
+the mean free path of a walk with anisotropy g is (1 − g) times that of an isotropic one: 1/μs′ at
+g = 0.
 
 Bands are linear sRGB of the lengths as if they were a reflectance under D65, with its negative
 lobes: distances scale with the mean free path, and RGB is linear in the spectrum of what arrives
 at a distance. Cut at 0, the weights would make red a tenth too narrow. What comes out is put back
 into the range of the spectrum. `of_maps` adds what the dermis absorbs, 1 / (μs′ + μa): light
 spreads there, while the epidermis, thinner than a mean free path, filters what goes through and
-spreads it little, so that melanin shortens no path here.
+spreads it little, so that melanin leaves the mean free path as it is.
 """
 
 from functools import lru_cache
@@ -24,7 +25,7 @@ from cutis.maps import SkinMaps
 from cutis.optics import WAVELENGTHS
 from cutis.optics.tissue import ALIAGA2022, Tissue
 
-PER_CM = 10.0
+MM_PER_CM = 10.0
 """Millimetres in a centimetre: a coefficient in cm⁻¹ is a length of 10 mm over it."""
 BLOOD, OXYGENATION = 65, 17
 """Nodes of the table over blood (equal steps of its fourth root) and oxygenation."""
@@ -36,7 +37,7 @@ def mean_free_path(anisotropy: float = 0.0, tissue: Tissue = ALIAGA2022) -> NDAr
     `anisotropy` is the g that the renderer walks with.
     """
     scattering = tissue.reduced_scattering(WAVELENGTHS) * tissue.dermis_scattering
-    return (1 - anisotropy) * _bands(PER_CM / scattering)
+    return (1 - anisotropy) * _bands(MM_PER_CM / scattering)
 
 
 def mean_free_path_in(
@@ -48,7 +49,7 @@ def mean_free_path_in(
     """(..., 3) the same in mm with the absorption of a dermis of `blood`, `oxygenation` (...)."""
     scattering = tissue.reduced_scattering(WAVELENGTHS) * tissue.dermis_scattering
     absorption = tissue.dermis_absorption(blood, oxygenation, WAVELENGTHS)
-    return (1 - anisotropy) * _bands(PER_CM / (scattering + absorption))
+    return (1 - anisotropy) * _bands(MM_PER_CM / (scattering + absorption))
 
 
 def of_maps(

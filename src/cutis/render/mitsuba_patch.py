@@ -48,9 +48,15 @@ def patch_albedo(
     alpha = np.asarray(single_scattering, dtype=np.float64)
     if alpha.shape != (3,) or not ((alpha >= 0) & (alpha <= 1)).all():
         raise CutisError("three single-scattering albedos from 0 to 1 are needed")
+    before = mi.variant()
     mi.set_variant("scalar_rgb")
-    scene = mi.load_dict(_scene(mi, alpha, anisotropy, refractive_index))
-    film = np.array(mi.render(scene, spp=samples, seed=mi.UInt32(seed)), dtype=np.float64)[..., :3]
+    try:
+        scene = mi.load_dict(_scene(mi, alpha, anisotropy, refractive_index))
+        light = mi.render(scene, spp=samples, seed=mi.UInt32(seed))
+        film = np.array(light, dtype=np.float64)[..., :3]
+    finally:
+        if before is not None:
+            mi.set_variant(before)
     pixels = film.reshape(-1, 3) / np.pi  # irradiance of radiance 1 is π
     return Measured(pixels.mean(axis=0), pixels.std(axis=0, ddof=1) / np.sqrt(len(pixels)))
 

@@ -84,6 +84,14 @@ class Skin(Closing):
         name = self.path.name
         return name.removesuffix(MAPS) if name.endswith(MAPS) else self.path.stem
 
+    def origins(self) -> list[Path]:
+        """The files that the skin was made from, there or not: whom to credit."""
+        found = [self.path, *([] if self.capture is None else [self.capture.path])]
+        if self.maps is not None and "source" in self.maps.provenance:
+            source = Path(self.maps.provenance["source"])
+            found += [self.path.parent / source, self.path.parent / source.name]
+        return found
+
     def close(self) -> None:
         """Lets go of the files."""
         for file in (self.maps, self.capture, self._paint):
