@@ -12,7 +12,7 @@ c, a radius r, an anisotropy g and an index n, channel by channel:
   about the view; the surface is index-matched on the way out.
 
 So base colours are found by the exact solver with these habits (`walked_albedo`, `base_colour`),
-and the dipole is undone (`radius`). Diffuse albedos above 0.92 are out of reach.
+and the dipole is undone (`radius`). Diffuse albedos above 0.91 are out of reach.
 Light that enters refracted runs steeper where it is seen square on, shallower at the rim: the
 albedo seen depends on the view by −10 to +30 % on the darkest skin. `facing` takes that back in
 the material, as a factor 1 + k(cos) h(c) of the colour, a cubic and a table from the exact solver.
