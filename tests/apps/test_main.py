@@ -16,8 +16,8 @@ COMMANDS = sorted(command.name for command in app.registered_commands)
 
 def test_the_commands():
     assert COMMANDS == [
-        "bench", "demo", "edit", "estimate", "export", "figures", "info", "simulate", "spectrum",
-        "train",
+        "bench", "demo", "edit", "estimate", "export", "figures", "fit", "info", "simulate",
+        "spectrum", "train",
     ]  # fmt: skip
 
 
