@@ -1,9 +1,11 @@
 """Rebuilds the tables of src/cutis/data/albedo: run `python tools/build_albedo_table.py`.
 
-aliaga2022.npz, spectra from the exact solver, and aliaga2022-rgb.npz, the colours of all skins.
+aliaga2022.npz and measured2026.npz, spectra from the exact solver, and aliaga2022-rgb.npz, the
+colours of all skins.
 """
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import IO
 
@@ -11,21 +13,25 @@ from rich.progress import Progress
 
 from cutis.albedo import AlbedoSpace
 from cutis.albedo.colour_table import build_colours, save_colours
-from cutis.albedo.spectral_table import build, save
-from cutis.optics import ALIAGA2022
+from cutis.albedo.spectral_table import SpectralTable, build, save
+from cutis.optics import ALIAGA2022, MEASURED2026, Tissue
 
 FOLDER = Path(__file__).parents[1] / "src" / "cutis" / "data" / "albedo"
 
 
 def main() -> None:
+    for tissue in (ALIAGA2022, MEASURED2026):
+        table = solved(tissue)
+        write(f"{tissue.name}.npz", partial(save, table))
+        if tissue == ALIAGA2022:
+            colours = build_colours(AlbedoSpace(table))
+            write(f"{tissue.name}-rgb.npz", partial(save_colours, colours))
+
+
+def solved(tissue: Tissue) -> SpectralTable:
     with Progress() as progress:
-        task = progress.add_task("wavelengths", total=None)
-        table = build(
-            ALIAGA2022, lambda done, total: progress.update(task, completed=done, total=total)
-        )
-    write(f"{ALIAGA2022.name}.npz", lambda file: save(table, file))
-    colours = build_colours(AlbedoSpace(table))
-    write(f"{ALIAGA2022.name}-rgb.npz", lambda file: save_colours(colours, file))
+        task = progress.add_task(tissue.name, total=None)
+        return build(tissue, lambda done, total: progress.update(task, completed=done, total=total))
 
 
 def write(name: str, save_to: Callable[[IO[bytes]], None]) -> None:

@@ -9,7 +9,7 @@ import pytest
 from cutis.albedo import albedo_space
 from cutis.albedo.sampled import SampledSpace
 from cutis.maps.files import MapsFile
-from cutis.optics import NAMES, from_coordinates, to_coordinates
+from cutis.optics import MEASURED2026, NAMES, from_coordinates, to_coordinates
 from cutis.textures import read_channels, write_channels
 
 LAM = np.arange(400.0, 701.0, 10.0)
@@ -98,6 +98,14 @@ def test_specular_part_and_held_parameters(cutis, tmp_path, skins, spectra):
     assert all(float(row["oxygenation_sigma"]) == 0 for row in rows)
 
 
+def test_tissue_and_shift_are_said(cutis, tmp_path, skins):
+    values = SampledSpace(albedo_space(MEASURED2026), LAM + 1.5).reflectance(skins).astype(float)
+    path = write_columns(tmp_path / "a.csv", values)
+    ended = cutis("fit", path, "--tissue", "measured2026", "--shift", 1.5)
+    assert "measured2026, surface reflection 0, wavelengths shifted by 1.5 nm" in ended.err
+    assert near(read_skins(ended.out)[1], skins)
+
+
 def test_range_leaves_wavelengths_out(cutis, tmp_path, skins, spectra):
     wide = np.concatenate([LAM, [800.0, 900.0]])
     values = np.hstack([spectra, np.full((12, 2), 0.9)])
@@ -142,6 +150,8 @@ def test_micrometres_are_announced(cutis, tmp_path, skins, spectra):
         (lambda y, lam: (y, lam), ["--blood", "3"], "outside its range"),
         (lambda y, lam: (y, lam), ["--noise", "0"], "noise"),
         (lambda y, lam: (y, lam), ["--scale", "0"], "scale"),
+        (lambda y, lam: (y, lam), ["--shift", "40"], "shift"),
+        (lambda y, lam: (y, lam), ["--tissue", "skin"], "--tissue is"),
         (lambda y, lam: (y, lam), ["-o", "skins.txt"], "end its name in .csv"),
         (lambda y, lam: (y, lam), ["-o", "absent/skins.csv"], "does not exist"),
     ],

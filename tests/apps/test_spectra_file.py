@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from cutis.apps.spectra_file import read_spectra
 from cutis.errors import CutisError
@@ -100,3 +102,28 @@ def test_what_is_no_table_is_one_line(tmp_path, data, words):
 def test_a_file_that_is_not_there(tmp_path):
     with pytest.raises(CutisError, match="no such file"):
         read_spectra(tmp_path / "absent.csv")
+
+
+@settings(
+    max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+@given(
+    st.one_of(
+        st.binary(max_size=200),
+        st.lists(
+            st.lists(st.sampled_from(["wavelength_nm", "400", "nan", "", "-1", "1e999", '"', "λ"])),
+            max_size=5,
+        ).map(lambda rows: "\n".join(",".join(row) for row in rows).encode()),
+    )
+)
+def test_any_file_is_a_table_or_one_line(tmp_path, data):
+    path = tmp_path / "any.csv"
+    path.write_bytes(data)
+    said = ""
+    try:
+        found = read_spectra(path)
+        assert found.values.shape == (len(found.labels), len(found.wavelengths))
+        assert (found.wavelengths > 0).all()
+    except CutisError as error:
+        said = str(error)
+    assert "\n" not in said

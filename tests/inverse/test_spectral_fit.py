@@ -13,6 +13,7 @@ from cutis.inverse import SpectralFitter, fit_spectra
 from cutis.optics import (
     ALIAGA2022,
     GITLINA2020,
+    MEASURED2026,
     NAMES,
     WAVELENGTHS,
     from_coordinates,
@@ -188,6 +189,17 @@ def test_what_cannot_be_fitted_is_said(change, words):
         SpectralFitter(**arguments)
 
 
+def test_wavelengths_that_are_too_short_are_set_right():
+    spectra = solved(USUAL, VISIBLE + 2)
+    found = fit_spectra(spectra, VISIBLE, shift=2.0)
+    assert found.rmse.max() < 1e-4
+    assert fit_spectra(spectra, VISIBLE).rmse.min() > 5 * found.rmse.max()
+    ends = fit_spectra(np.full((1, 41), 0.3), WAVELENGTHS, shift=2.0)
+    assert np.isfinite(ends.values).all()
+    with pytest.raises(CutisError, match="shift"):
+        SpectralFitter(VISIBLE, shift=11.0)
+
+
 def test_spectra_of_another_length_are_refused():
     with pytest.raises(CutisError, match="not of shape"):
         SpectralFitter(VISIBLE).fit(np.ones((3, 30)))
@@ -214,6 +226,14 @@ def test_measured_skins_of_eight_groups(shared_data):
         def starts(self, y, weight):
             more = np.random.default_rng(1).random((len(y), 40, 5))
             return np.concatenate([super().starts(y, weight), more], axis=1)
+
+    calibrated = SpectralFitter(VISIBLE, MEASURED2026, specular=0.028)
+    better = calibrated.fit(spectra[chosen])
+    bias = (calibrated.reflectance(better.values) - spectra[chosen]).mean(axis=0)
+    assert better.rmse.mean() < 0.0045
+    assert np.abs(bias).max() < 0.006
+    shifted = SpectralFitter(VISIBLE, MEASURED2026, specular=0.028, shift=1.8).fit(spectra[chosen])
+    assert shifted.rmse.mean() < 0.004
 
     brute = Everywhere(VISIBLE, specular=0.028).fit(spectra[chosen[::4]])
     deeper = found.rmse[::4] - brute.rmse

@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from cutis.errors import CutisError
 from cutis.textures import open_cube
@@ -115,3 +117,31 @@ def test_missing_halves(write_envi, tmp_path):
     (tmp_path / "b.hdr").write_bytes(b"RIFF\xff\x00")
     with pytest.raises(CutisError, match="no ENVI header"):
         open_cube(tmp_path / "b.raw")
+
+
+@settings(
+    max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+@given(
+    st.dictionaries(
+        st.sampled_from(
+            ["lines", "samples", "bands", "header offset", "data type", "interleave", "byte order",
+             "wavelength", "wavelength units", "bbl", "data ignore value"]
+        ),
+        st.one_of(
+            st.integers(-(2**70), 2**70).map(str),
+            st.sampled_from(["{", "{}", "{1,2}", "bsq", "nan", "1e999", "", "5", "µm"]),
+            st.text(max_size=8).map(lambda text: text.replace("\n", " ")),
+        ),
+        max_size=3,
+    )
+)  # fmt: skip
+def test_any_header_is_a_cube_or_one_line(write_envi, tmp_path, fields):
+    path = write_envi(tmp_path / "a.hdr", cube(), **fields)
+    said = ""
+    try:
+        with open_cube(path) as file:
+            assert file.rows(slice(0, 1)).shape[-1] == len(file.wavelengths)
+    except CutisError as error:
+        said = str(error)
+    assert "\n" not in said

@@ -27,6 +27,15 @@ def fit(
             "the specular part in (SCI, 8°/diffuse), 0 where it is left out.",
         ),
     ] = 0.0,
+    tissue: Annotated[
+        str, typer.Option("--tissue", help="aliaga2022, or measured2026, fitted to measured skin.")
+    ] = "aliaga2022",
+    shift: Annotated[
+        float,
+        typer.Option(
+            "--shift", help="nm by which the instrument's wavelengths are too short, if known."
+        ),
+    ] = 0.0,
     wavelength_range: Annotated[
         str, typer.Option("--range", help="Wavelengths to fit, in nm: 400,700.")
     ] = "380,780",
@@ -64,7 +73,9 @@ def fit(
     flags = dict(zip(NAMES, (melanin, blood, thickness, eumelanin, oxygenation), strict=True))
     held = {name: value for name, value in flags.items() if value is not None}
     low, high = _range(wavelength_range)
-    request = Request(spectra, output, specular, low, high, scale, noise, held, quiet)
+    request = Request(
+        spectra, output, specular, low, high, scale, noise, held, quiet, tissue, shift
+    )
     if spectra.suffix.lower() in TABLES:
         fit_table(request, correlations)
     else:

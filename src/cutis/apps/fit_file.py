@@ -14,11 +14,13 @@ from cutis.apps.console import err, steps
 from cutis.apps.spectra_file import read_spectra
 from cutis.errors import CutisError
 from cutis.inverse import SpectralFit, SpectralFitter
-from cutis.optics import ALIAGA2022, NAMES, PARAMETERS, WAVELENGTHS, Parameter
+from cutis.optics import ALIAGA2022, MEASURED2026, NAMES, PARAMETERS, WAVELENGTHS, Parameter
 from cutis.textures import channel_writer, open_cube, replacing
 from cutis.textures.problem import problem
 from cutis.textures.reflectance import HIGHEST, fraction_scale, without_impossible
 
+TISSUES = {tissue.name: tissue for tissue in (ALIAGA2022, MEASURED2026)}
+"""Tissues that can be asked for: those with the five parameters of skin maps."""
 STEP = 2000
 """Spectra of a table between two looks at the progress bar."""
 
@@ -36,6 +38,8 @@ class Request:
     noise: float | None = None
     held: Mapping[str, float] | None = None
     quiet: bool = False
+    tissue: str = ALIAGA2022.name
+    shift: float = 0.0
 
     def say(self, note: str) -> None:
         """A note to whoever watches; on stderr, since results may go to stdout."""
@@ -61,9 +65,16 @@ class Request:
 
     def fitter(self, wavelengths: NDArray[np.float64]) -> SpectralFitter:
         """A fitter of what is asked for at `wavelengths`."""
+        if self.tissue not in TISSUES:
+            raise CutisError(f"--tissue is {' or '.join(TISSUES)}, not {self.tissue!r}")
         try:
             return SpectralFitter(
-                wavelengths, specular=self.specular, held=self.held, noise=self.noise
+                wavelengths,
+                TISSUES[self.tissue],
+                specular=self.specular,
+                shift=self.shift,
+                held=self.held,
+                noise=self.noise,
             )
         except CutisError as error:
             raise problem(self.spectra, str(error)) from error
@@ -152,9 +163,12 @@ def fit_cube(request: Request, wavelengths: Path | None = None) -> None:
             f"cutis:{p.name}": f"{p.meaning} [{p.unit}], {p.low:g} to {p.high:g}"
             for p in PARAMETERS
         }
-        header["cutis:model"] = ALIAGA2022.name
+        tissue = request.tissue
+        header["cutis:model"] = "default" if tissue == ALIAGA2022.name else tissue
+        header["cutis:tissue"] = tissue
         header["cutis:spectra"] = cube.path.name
         header["cutis:specular"] = f"{request.specular:g}"
+        header["cutis:shift"] = f"{request.shift:g}"
         low = high = dropped = done = 0
         total, spread = 0, 0.0
         with (
@@ -182,9 +196,13 @@ def fit_cube(request: Request, wavelengths: Path | None = None) -> None:
     if dropped:
         request.say(f"{dropped} texels without a spectrum are outside the mask")
     request.say(
-        f"wrote {output}: {total} skins, mean RMSE {spread / total:.4f}, "
-        f"surface reflection {request.specular:g}"
+        f"wrote {output}: {total} skins, mean RMSE {spread / total:.4f}, {_conditions(request)}"
     )
+
+
+def _conditions(request: Request) -> str:
+    shift = f", wavelengths shifted by {request.shift:g} nm" if request.shift else ""
+    return f"{request.tissue}, surface reflection {request.specular:g}{shift}"
 
 
 def _maps(
@@ -228,5 +246,5 @@ def _summary(found: SpectralFit, request: Request) -> str:
     rmse = found.rmse
     return (
         f"{len(rmse)} skins, RMSE mean {rmse.mean():.4f}, worst {rmse.max():.4f}, "
-        f"surface reflection {request.specular:g}"
+        f"{_conditions(request)}"
     )

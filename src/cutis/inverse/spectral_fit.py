@@ -25,13 +25,15 @@ from numpy.typing import ArrayLike, NDArray
 from cutis.albedo import AlbedoSpace, albedo_space
 from cutis.albedo.sampled import SampledSpace
 from cutis.errors import CutisError
-from cutis.optics import ALIAGA2022, NAMES, Parameter, Tissue
+from cutis.optics import ALIAGA2022, NAMES, WAVELENGTHS, Parameter, Tissue
 
 LIBRARY = 4096
 """Skins among which starts are looked up."""
 PARTS = 8
 """Parts of the library, each of which gives a start: low and high thickness, eumelanin, blood."""
 ITERATIONS = 60
+LARGEST_SHIFT = 10.0
+"""nm by which wavelengths may be said to be off."""
 UNKNOWN = 12.0
 """Precision of a coordinate that is uniform in [0, 1]."""
 LEAST_NOISE = 1e-5
@@ -71,17 +73,20 @@ class SpectralFitter:
         tissue: Tissue = ALIAGA2022,
         *,
         specular: float = 0.0,
+        shift: float = 0.0,
         held: Mapping[str, float] | None = None,
         noise: float | None = None,
     ) -> None:
         """Arguments and errors are those of `fit_spectra`."""
         if not 0 <= specular < 0.2:
             raise CutisError(f"specular = {specular:g}: a surface of skin reflects 0 to 0.2")
+        if not abs(shift) <= LARGEST_SHIFT:
+            raise CutisError(f"shift = {shift:g} nm: no spectrophotometer is off by more than 10")
         if noise is not None and not 0 < noise < 1:
             raise CutisError(f"noise = {noise:g}: it must lie between 0 and 1")
         self.specular, self.noise = float(specular), noise
         self.space: AlbedoSpace = albedo_space(tissue)
-        self.sampled = SampledSpace(self.space, wavelengths)
+        self.sampled = SampledSpace(self.space, _shifted(wavelengths, shift))
         self.free = _free(tissue, held or {})
         self._held = {k: v for k, v in (held or {}).items()}
         if not self.free.any():
@@ -239,18 +244,30 @@ def fit_spectra(
     tissue: Tissue = ALIAGA2022,
     *,
     specular: float = 0.0,
+    shift: float = 0.0,
     held: Mapping[str, float] | None = None,
     noise: float | None = None,
 ) -> SpectralFit:
     """(n, w) reflectance, 0 to 1, at wavelengths (w,) in 380–780 nm → skins with covariance.
 
     NaN marks what was not measured. `specular` is ρ, 0.028 for spectra of n = 1.4 with the surface
-    included; `held` gives parameters, by name, that are known; `noise` the standard deviation of a
-    reflectance, by default taken from the residual. Raises CutisError for wavelengths outside or
+    included; `shift` how many nm the instrument's wavelengths are too short; `held`
+    gives parameters, by name, that are known; `noise` the standard deviation of a reflectance, by
+    default taken from the residual. Raises CutisError for wavelengths outside or
     fewer than free parameters, and for values held outside their range.
     """
-    fitter = SpectralFitter(wavelengths, tissue, specular=specular, held=held, noise=noise)
+    fitter = SpectralFitter(
+        wavelengths, tissue, specular=specular, shift=shift, held=held, noise=noise
+    )
     return fitter.fit(reflectance)
+
+
+def _shifted(wavelengths: ArrayLike, shift: float) -> NDArray[np.float64]:
+    """True wavelengths, nm; those that the shift takes over an end of the table rest on it."""
+    stated = np.asarray(wavelengths, dtype=np.float64)
+    first, last = WAVELENGTHS[0], WAVELENGTHS[-1]
+    inside = (stated >= first) & (stated <= last)
+    return np.where(inside, np.clip(stated + shift, first, last), stated)
 
 
 def _free(tissue: Tissue, held: Mapping[str, float]) -> NDArray[np.bool_]:

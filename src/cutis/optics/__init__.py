@@ -11,12 +11,13 @@ from cutis.optics.parameters import (
     skin,
     to_coordinates,
 )
-from cutis.optics.tissue import ALIAGA2022, GITLINA2020, WAVELENGTHS, Tissue
+from cutis.optics.tissue import ALIAGA2022, GITLINA2020, MEASURED2026, WAVELENGTHS, Tissue
 
 __all__ = [
     "ALIAGA2022",
     "EPIDERMAL_BLOOD",
     "GITLINA2020",
+    "MEASURED2026",
     "NAMES",
     "PARAMETERS",
     "TYPICAL",
