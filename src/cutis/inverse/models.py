@@ -17,10 +17,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutis.albedo.colour_table import colour_table
+from cutis.albedo.rare import rare_ratio
 from cutis.errors import CutisError
 from cutis.inverse.device import check_device, torch_network
 from cutis.inverse.lookup import SHAPES, lookup_tensor
 from cutis.inverse.network import Autoencoder, Perceptron, load_weights
+from cutis.optics import ALIAGA2022, PARAMETERS, Tissue
 
 MODELS = ("default", "aliaga2022", *SHAPES, "kubelka-munk")
 """Names that `load_model` knows; it also takes the path of a weights file."""
@@ -46,8 +48,21 @@ class Model:
         return _in_bands(self.to_skins, rgb, 5)
 
     def decode(self, parameters: ArrayLike) -> NDArray[np.float32]:
-        """(..., 5) parameters in their units → (..., 3) linear sRGB under D65."""
-        return _in_bands(self.to_rgb, parameters, 3)
+        """(..., 5) parameters in their units → (..., 3) linear sRGB under D65.
+
+        Of (..., 8), the last three are rare chromophores (`optics.RARE`): their colour is the
+        model's, times what they change in the exact albedo space of its tissue.
+        """
+        skins = np.asarray(parameters, dtype=np.float32)
+        colours = _in_bands(self.to_rgb, skins[..., : len(PARAMETERS)], 3)
+        if skins.shape[-1] > len(PARAMETERS):
+            colours *= _in_bands(lambda some: rare_ratio(tissue_of(self), some), skins, 3)
+        return colours
+
+
+def tissue_of(model: Model) -> Tissue:
+    """The tissue whose albedo space gives the spectra of a model's skins."""
+    return getattr(model, "tissue", ALIAGA2022)
 
 
 def _in_bands(
