@@ -17,7 +17,6 @@ from cutis.optics import (
     WAVELENGTHS,
     Parameter,
     Tissue,
-    chromophores,
 )
 from cutis.optics.tissue import CAROTENE_IN_DERMIS
 
@@ -144,9 +143,9 @@ def absorptions(tissue: Tissue, wavelengths: NDArray[np.float64]) -> NDArray[np.
         tissue.baseline(lam),
     ]
     if tissue.rare_chromophores:
-        carotene = chromophores.beta_carotene(lam, 1.0)
+        carotene = tissue.added_carotene(lam)
         spectra += [
-            chromophores.bilirubin(lam, 1.0),
+            tissue.added_bilirubin(lam),
             carotene,
             CAROTENE_IN_DERMIS * carotene,
             tissue.brown_blood(lam),

@@ -27,6 +27,9 @@ SORET_PEAK, SORET_WAVELENGTH = 4 * 179e3, 405.0
 SORET_WIDTH = 762.5
 """cm⁻¹, standard deviation of the band with which methaemoglobin goes on below 450 nm: the one that
 has the table's slope there."""
+YELLOW_ENDS = 550.0
+"""nm from which the tables of bilirubin and β-carotene are noise and drift, 0.1 and 0.5 % of their
+peaks: nothing in the concentrations of healthy skin, a dent in those of the rare parameters."""
 WHOLE_BLOOD = 150.0
 """g/L of haemoglobin in the blood of bosschaart2014 (haematocrit 45 %)."""
 BILIRUBIN_MOLAR_MASS = 584.66
@@ -133,21 +136,22 @@ def _soret(wavelength: ArrayLike) -> NDArray[np.float64]:
     return np.exp(-0.5 * away**2)
 
 
-def bilirubin(wavelength: ArrayLike, concentration: float = 0.05) -> NDArray[np.float64]:
-    """Bilirubin at `concentration` g/L, extinction in chloroform [photochemcad]."""
-    molar = concentration / BILIRUBIN_MOLAR_MASS
-    return (
-        LN10
-        * molar
-        * _interpolate("bilirubin_chloroform", "epsilon", wavelength, zero_past_end=True)
-    )
+def bilirubin(
+    wavelength: ArrayLike, concentration: float = 0.05, last: float = np.inf
+) -> NDArray[np.float64]:
+    """Bilirubin at `concentration` g/L, extinction in chloroform [photochemcad]; 0 past `last`."""
+    moles = concentration / BILIRUBIN_MOLAR_MASS
+    return LN10 * moles * _until(last, "bilirubin_chloroform", wavelength)
 
 
-def beta_carotene(wavelength: ArrayLike, concentration: float = 2.1e-4) -> NDArray[np.float64]:
-    """β-carotene at `concentration` g/L, extinction in hexane [photochemcad]."""
-    molar = concentration / BETA_CAROTENE_MOLAR_MASS
-    return (
-        LN10
-        * molar
-        * _interpolate("beta_carotene_hexane", "epsilon", wavelength, zero_past_end=True)
-    )
+def beta_carotene(
+    wavelength: ArrayLike, concentration: float = 2.1e-4, last: float = np.inf
+) -> NDArray[np.float64]:
+    """β-carotene at `concentration` g/L, extinction in hexane [photochemcad]; 0 past `last`."""
+    moles = concentration / BETA_CAROTENE_MOLAR_MASS
+    return LN10 * moles * _until(last, "beta_carotene_hexane", wavelength)
+
+
+def _until(last: float, name: str, wavelength: ArrayLike) -> NDArray[np.float64]:
+    molar = _interpolate(name, "epsilon", wavelength, zero_past_end=True)
+    return np.where(np.asarray(wavelength) > last, 0.0, molar) if last < np.inf else molar

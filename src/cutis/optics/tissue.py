@@ -87,7 +87,10 @@ class Tissue:
             )
         for name, _ in self.fixed:
             if name not in NAMES:
-                raise CutisError(f"tissue {self.name}: only {', '.join(NAMES)} may be fixed")
+                known = ", ".join(NAMES)
+                raise CutisError(
+                    f"tissue {self.name}: unknown parameter {name!r} is fixed; known are {known}"
+                )
         fixed = tuple((str(name), parameter(name).check(value)) for name, value in self.fixed)
         object.__setattr__(self, "fixed", fixed)
 
@@ -156,7 +159,7 @@ class Tissue:
         lam = np.atleast_1d(wavelength)
         pigment = phi * self.eumelanin(lam) + (1 - phi) * self.pheomelanin(lam)
         plain = v_m * pigment + (1 - v_m) * self.epidermis_background(lam)
-        return plain + np.asarray(carotene)[..., None] * chromophores.beta_carotene(lam, 1.0)
+        return plain + np.asarray(carotene)[..., None] * self.added_carotene(lam)
 
     def dermis_absorption(
         self,
@@ -180,8 +183,8 @@ class Tissue:
         if np.any(met):
             whole = (1 - met) * whole + met * self.brown_blood(lam)
         plain = v_b * whole + (1 - v_b) * self.baseline(lam)
-        yellow = np.asarray(bilirubin)[..., None] * chromophores.bilirubin(lam, 1.0)
-        orange = np.asarray(carotene)[..., None] * chromophores.beta_carotene(lam, 1.0)
+        yellow = np.asarray(bilirubin)[..., None] * self.added_bilirubin(lam)
+        orange = np.asarray(carotene)[..., None] * self.added_carotene(lam)
         return plain + yellow + CAROTENE_IN_DERMIS * orange
 
     def epidermis_background(self, wavelength: ArrayLike) -> NDArray[np.float64]:
@@ -198,6 +201,16 @@ class Tissue:
             for substance in substances
         )
         return none + dissolved, full + dissolved
+
+    @staticmethod
+    def added_bilirubin(wavelength: ArrayLike) -> NDArray[np.float64]:
+        """μa of the parameter bilirubin in the dermis, cm⁻¹ per g/L."""
+        return chromophores.bilirubin(wavelength, 1.0, chromophores.YELLOW_ENDS)
+
+    @staticmethod
+    def added_carotene(wavelength: ArrayLike) -> NDArray[np.float64]:
+        """μa of the parameter carotene in the epidermis, cm⁻¹ per g/L."""
+        return chromophores.beta_carotene(wavelength, 1.0, chromophores.YELLOW_ENDS)
 
     def brown_blood(self, wavelength: ArrayLike) -> NDArray[np.float64]:
         """μa of blood all of whose haemoglobin is methaemoglobin, cm⁻¹, pigments in it included."""
