@@ -1,11 +1,9 @@
 """Rebuilds the tables of src/cutis/data/albedo: run `python tools/build_albedo_table.py`.
 
-aliaga2022.npz and measured2026.npz, spectra from the exact solver, each once more with rare
-chromophores (-rare.npz), and aliaga2022-rgb.npz, the colours of all skins. Names of tissues as
-arguments build theirs only.
+aliaga2022.npz and measured2026.npz, spectra from the exact solver, the same names with -rare,
+those with rare chromophores, and with -rgb, the colours of all skins.
 """
 
-import sys
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -14,22 +12,21 @@ from typing import IO
 from rich.progress import Progress
 
 from cutis.albedo import AlbedoSpace
-from cutis.albedo.colour_table import build_colours, save_colours
+from cutis.albedo.colour_table import SHIPPED, build_colours, save_colours
 from cutis.albedo.spectral_table import SpectralTable, build, save, table_file
-from cutis.optics import ALIAGA2022, TISSUES, Tissue, with_rare_chromophores
+from cutis.optics import Tissue, with_rare_chromophores
 
 FOLDER = Path(__file__).parents[1] / "src" / "cutis" / "data" / "albedo"
 
 
 def main() -> None:
-    for tissue in (TISSUES[name] for name in sys.argv[1:] or TISSUES):
+    for tissue in SHIPPED:
         rare = with_rare_chromophores(tissue)
         write(table_file(rare), partial(save, solved(rare)))
         table = solved(tissue)
         write(table_file(tissue), partial(save, table))
-        if tissue == ALIAGA2022:
-            colours = build_colours(AlbedoSpace(table))
-            write(f"{tissue.name}-rgb.npz", partial(save_colours, colours))
+        colours = build_colours(AlbedoSpace(table))
+        write(f"{tissue.name}-rgb.npz", partial(save_colours, colours))
 
 
 def solved(tissue: Tissue) -> SpectralTable:

@@ -5,7 +5,7 @@ import pytest
 
 from cutis.albedo.rare import rare_ratio
 from cutis.errors import CutisError
-from cutis.inverse.models import load_model, tissue_of
+from cutis.inverse.models import load_model
 from cutis.maps import Edit, estimate, load_maps, presets, save_maps
 from cutis.maps.recolouring import recolouring
 from cutis.optics import NAMES, RARE_NAMES, WAVELENGTHS
@@ -40,7 +40,7 @@ def test_colours_change_by_the_ratio_of_the_tissue(skin, face_rgb):
     inside = skin.mask > 0
     after = ill.parameters(names=(*NAMES, *RARE_NAMES))[inside]
     model = load_model(skin.model)
-    ratio = model.decode(after[:, :5]) * rare_ratio(tissue_of(model), after)
+    ratio = model.decode(after[:, :5]) * rare_ratio(skin.tissue, after)
     ratio /= model.decode(skin.parameters()[inside])
     cover = skin.mask[inside][:, None]
     expected = face_rgb[inside] * (1 + cover * (ratio - 1))
