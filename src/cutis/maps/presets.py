@@ -42,8 +42,7 @@ cyanosis: Preset = (Edit("oxygenation", "multiply", 0.4),)
 """From 0.75 to 0.3: more than 50 g/L of deoxygenated haemoglobin in the vessels
 [lundsgaard1923]."""
 methaemoglobinaemia: Preset = (Edit("methaemoglobin", "set", 0.3),)
-"""Twice what is seen at first, 15 g/L or a tenth of all haemoglobin, and then some
-[finch1948]."""
+"""Three times what is seen at first, 15 g/L or a tenth of all haemoglobin [finch1948]."""
 
 PRESETS: dict[str, Preset] = {
     "blood-eighth": blood_eighth,
