@@ -28,7 +28,7 @@ def baked() -> str:
         "| decoder against the exact space: p99 |",
         "|---|---|---|---|---|---|",
     ]
-    model, encoder, space = load_model(), shipped_encoder(), albedo_space()
+    model, encoder, space = load_model("aliaga2022-exact"), shipped_encoder(), albedo_space()
     for name, captured in track(list(every_face(data_folder(None), TEXELS)), "baked"):
         gains = np.array(calibrate(captured, white="auto").gains)
         colours = (captured * gains).astype(np.float32)

@@ -1,7 +1,7 @@
 """Rebuilds the tables of src/cutis/data/albedo: run `python tools/build_albedo_table.py`.
 
-aliaga2022.npz and measured2026.npz, spectra from the exact solver, and aliaga2022-rgb.npz, the
-colours of all skins.
+aliaga2022.npz and measured2026.npz, spectra from the exact solver, and the same names with -rgb,
+the colours of all skins.
 """
 
 from collections.abc import Callable
@@ -12,20 +12,19 @@ from typing import IO
 from rich.progress import Progress
 
 from cutis.albedo import AlbedoSpace
-from cutis.albedo.colour_table import build_colours, save_colours
+from cutis.albedo.colour_table import SHIPPED, build_colours, save_colours
 from cutis.albedo.spectral_table import SpectralTable, build, save
-from cutis.optics import ALIAGA2022, MEASURED2026, Tissue
+from cutis.optics import Tissue
 
 FOLDER = Path(__file__).parents[1] / "src" / "cutis" / "data" / "albedo"
 
 
 def main() -> None:
-    for tissue in (ALIAGA2022, MEASURED2026):
+    for tissue in SHIPPED:
         table = solved(tissue)
         write(f"{tissue.name}.npz", partial(save, table))
-        if tissue == ALIAGA2022:
-            colours = build_colours(AlbedoSpace(table))
-            write(f"{tissue.name}-rgb.npz", partial(save_colours, colours))
+        colours = build_colours(AlbedoSpace(table))
+        write(f"{tissue.name}-rgb.npz", partial(save_colours, colours))
 
 
 def solved(tissue: Tissue) -> SpectralTable:

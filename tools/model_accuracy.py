@@ -19,7 +19,7 @@ from cutis.optics import NAMES, to_coordinates
 
 ROOT = Path(__file__).parents[1]
 SHARED = ROOT.parent / "shared" / "data" / "albedo"
-MODELS = ("default", "aliaga2022")
+MODELS = ("aliaga2022-exact", "aliaga2022")
 TENSORS = ("lookup", "lookup-55k")
 """Compared in the closed loop only."""
 ORDER = ("melanin", "blood", "thickness", "oxygenation", "eumelanin")
@@ -47,9 +47,9 @@ def closed_loop() -> tuple[str, str]:
     for path, mask_path in track(textures(), "closed loop"):
         face = read(path)
         mask = None if mask_path is None else read_mask(mask_path, face.shape)
-        automatic = estimate(face, mask, white="auto")
+        automatic = estimate(face, mask, white="auto", model=MODELS[0])
         runs = [(automatic.calibration.gains, model) for model in (*MODELS, *TENSORS)]
-        runs.append(((1.0, 1.0, 1.0), "default"))
+        runs.append(((1.0, 1.0, 1.0), MODELS[0]))
         for gains, model in runs:
             found = report(estimate(face, mask, white=gains, model=model))
             label = "none" if gains == (1.0, 1.0, 1.0) else " ".join(f"{g:.2f}" for g in gains)

@@ -214,7 +214,7 @@ def test_a_folder_without_write_access(command, maps, process, one_line, tmp_pat
         "estimate": ["estimate", maps.parents[1] / "face.png", "-o", locked],
         "edit": ["edit", maps, "--blood", "x2", "-o", locked / "new.png"],
         "spectrum": ["spectrum", "-o", locked / "skin.csv"],
-        "train": ["train", "default", "-o", locked / "run"],
+        "train": ["train", "aliaga2022-exact", "-o", locked / "run"],
     }
     assert "permission denied" in one_line(process(*arguments[command], before=AS_ANYONE))
     assert list(locked.iterdir()) == []

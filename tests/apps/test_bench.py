@@ -5,6 +5,7 @@ import sys
 
 from cutis.apps.bench import fastest_rival, table
 from cutis.apps.timing import Timed
+from cutis.inverse.models import DEFAULT
 
 
 def timed(system, step, seconds):
@@ -23,7 +24,7 @@ def test_bench_on_a_few_texels(cutis):
     ended = cutis("bench", "--size", "16", "--repeats", "1")
     assert (ended.code, ended.err) == (0, "")
     assert "16 × 16 texels" in ended.out
-    for word in ("default", "aliaga2022", "exact space", "41 bands", "GFLOP/s", "copying"):
+    for word in (DEFAULT, "aliaga2022", "exact space", "41 bands", "GFLOP/s", "copying"):
         assert word in ended.out
 
 

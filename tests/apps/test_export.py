@@ -81,7 +81,7 @@ def test_onnx_is_written(half, cutis, tmp_path):
         ("a.lut", ("--preset", "tanning"), ".cube or .clf"),
         ("a.cube", ("--preset", "tanning", "--model", "none"), "unknown model"),
         ("decoder.onnx", ("--preset", "tanning"), "is for networks"),
-        ("decoder.onnx", ("--model", "default"), "not a pair of networks"),
+        ("decoder.onnx", ("--model", "aliaga2022-exact"), "not a pair of networks"),
         ("encoder.glsl", (), "only the decoder"),
     ],
 )

@@ -14,7 +14,7 @@ RNG = np.random.default_rng(8)
 
 @pytest.fixture(scope="module")
 def baked() -> Baked:
-    weights = resources.files("cutis.data").joinpath("weights", "default.npz")
+    weights = resources.files("cutis.data").joinpath("weights", "aliaga2022-exact.npz")
     with resources.as_file(weights) as file:
         return load_baked(file)
 

@@ -52,8 +52,8 @@ def test_unknown_devices_and_models_that_are_tables(monkeypatch):
     with pytest.raises(CutisError, match="unknown device 'gpu'; choose cpu or cuda"):
         load_model("aliaga2022", "gpu")
     monkeypatch.setattr("cutis.inverse.models.check_device", lambda device: None)
-    with pytest.raises(CutisError, match="default is a table"):
-        load_model("default", "cuda")
+    with pytest.raises(CutisError, match="aliaga2022-exact is a table"):
+        load_model("aliaga2022-exact", "cuda")
 
 
 def test_on_device_reaches_models_loaded_inside(monkeypatch):

@@ -1,12 +1,15 @@
 """Models by name."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from cutis.albedo import albedo_space
 from cutis.errors import CutisError
-from cutis.inverse import MODELS, load_model
-from cutis.optics import PARAMETERS, from_coordinates
+from cutis.inverse import MODELS, load_model, tissue_of
+from cutis.inverse.models import DEFAULT, stored_name
+from cutis.optics import ALIAGA2022, MEASURED2026, PARAMETERS, from_coordinates
 
 
 @pytest.mark.parametrize("name", MODELS)
@@ -23,14 +26,43 @@ def test_parameters_are_in_range_for_any_colour(name):
 def test_loop_closes_on_skins(name):
     """Of the baseline, whose colours are a surface that skins leave: test_kubelka_munk.py."""
     u = np.random.default_rng(0).uniform(0.15, 0.6, (2, 100, 5))
-    rgb = albedo_space().rgb(from_coordinates(u))
     model = load_model(name)
+    rgb = albedo_space(model.tissue).rgb(from_coordinates(u))
     assert np.abs(model.decode(model.encode(rgb)) - rgb).mean() < 2e-3
 
 
 def test_default_decodes_as_the_exact_space_does():
     skins = from_coordinates(np.random.default_rng(1).random((50, 5)))
-    np.testing.assert_allclose(load_model().decode(skins), albedo_space().rgb(skins), atol=3e-4)
+    exact = albedo_space(load_model().tissue).rgb(skins)
+    np.testing.assert_allclose(load_model().decode(skins), exact, atol=3e-4)
+
+
+def test_default_is_another_name():
+    assert load_model() is load_model("default") is load_model(DEFAULT)
+    assert "default" not in MODELS
+
+
+def test_headers_that_say_default_are_from_before():
+    assert stored_name("default") == "aliaga2022-exact"
+    assert stored_name("measured2026") == "measured2026"
+
+
+def test_a_model_without_trust_has_none():
+    assert load_model("aliaga2022-exact").trust(np.full((2, 3), 0.3)) is None
+
+
+def test_trust_goes_through_in_bands(monkeypatch):
+    monkeypatch.setattr("cutis.inverse.models.BAND", 4)
+    plain = load_model("aliaga2022-exact")
+    knows = replace(plain, to_trust=lambda rgb: np.tile(rgb, 2))
+    rgb = np.random.default_rng(3).random((3, 5, 3), dtype=np.float32)
+    np.testing.assert_array_equal(knows.trust(rgb), np.tile(rgb, 2))
+
+
+def test_models_have_their_tissue():
+    assert tissue_of("measured2026") is MEASURED2026
+    for name in ("aliaga2022-exact", "aliaga2022", "lookup", "kubelka-munk"):
+        assert load_model(name).tissue is tissue_of(name) is ALIAGA2022
 
 
 @pytest.mark.parametrize("name", MODELS)

@@ -123,7 +123,7 @@ def capture(capture1):
 
 @pytest.mark.parametrize(
     ("model", "mse", "mean", "p95"),
-    [("aliaga2022", 3e-5, 0.50, 1.5), ("default", 5e-6, 0.20, 0.6)],
+    [("aliaga2022", 3e-5, 0.50, 1.5), ("aliaga2022-exact", 5e-6, 0.20, 0.6)],
 )
 def test_a_real_face_is_explained(model, mse, mean, p95, capture):
     rgb, mask, auto = capture

@@ -10,8 +10,9 @@ import pytest
 
 import cutis
 from cutis.errors import CutisError
+from cutis.inverse.models import DEFAULT
 from cutis.maps import estimate, find_source, load_maps, presets, save_maps, source_note
-from cutis.optics import NAMES, PARAMETERS
+from cutis.optics import ALIAGA2022, NAMES, PARAMETERS
 from cutis.textures import read_channels, read_texture, write_channels
 
 CONVERTED = '{"gains": [1, 1, 1], "origin": "none", "light": "A", "conversion": %s}'
@@ -61,11 +62,22 @@ def test_header_says_what_is_in_the_file(made):
     for known in PARAMETERS:
         assert f"[{known.unit}]" in header[f"cutis:{known.name}"]
         assert f"{known.low:g} to {known.high:g}" in header[f"cutis:{known.name}"]
-    assert header["cutis:model"] == "default"
+    assert header["cutis:model"] == DEFAULT
     assert json.loads(header["cutis:calibration"])["gains"] == [1.1, 1.0, 0.93]
     assert header["cutis:source"] == "../face.png"
     assert header["cutis:source_sha256"] == hashlib.sha256(capture.read_bytes()).hexdigest()
     assert header["cutis:source_colorspace"] == "auto"
+
+
+@pytest.mark.parametrize("header", [{"cutis:model": "default"}, {}], ids=["default", "none"])
+def test_files_from_before_the_measured_model_are_of_the_exact_one(made, header, tmp_path):
+    channels, notes = read_channels(made[1])
+    notes = {key: value for key, value in notes.items() if key.startswith("cutis:")}
+    del notes["cutis:model"]
+    write_channels(tmp_path / "old.skin.exr", channels, "float", notes | header)
+    old = load_maps(tmp_path / "old.skin.exr")
+    assert old.model == "aliaga2022-exact"
+    assert old.tissue is ALIAGA2022
 
 
 def test_edited_maps_edited_again_are_as_if_edited_at_once(made, tmp_path):

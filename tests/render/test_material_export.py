@@ -6,6 +6,7 @@ import xml.etree.ElementTree as ElementTree
 import pytest
 
 from cutis.errors import CutisError
+from cutis.inverse.models import DEFAULT
 from cutis.maps import Edit, estimate, save_maps
 from cutis.render.blender import find_blender
 from cutis.render.heads import head
@@ -34,7 +35,7 @@ def test_files_are_those_told_and_name_each_other(maps, tmp_path):
     named = {texture["file"] for texture in stored["textures"].values()}
     assert named <= {path.name for path in done.files}
     assert stored["edits"] == ["blood x2, amount 0.5"]
-    assert stored["model"] == "default"
+    assert stored["model"] == DEFAULT
     assert stored["source"] == "face.skin.exr"
     assert stored["radius_mm"] == [0.08, 0.06, 0.05]
     root = ElementTree.parse(folder / "tan.mtlx").getroot()

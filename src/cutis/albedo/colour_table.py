@@ -11,15 +11,16 @@ the exact form. Errors: docs/albedo.md; built by tools/build_albedo_table.py.
 """
 
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cached_property, lru_cache
 from importlib import resources
 from typing import IO
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cutis.albedo.space import AlbedoSpace
+from cutis.albedo.space import AlbedoSpace, albedo_space
 from cutis.albedo.spectral_table import chebyshev, chebyshev_to_spline, spline_basis
+from cutis.optics import ALIAGA2022, MEASURED2026, Tissue
 from cutis.optics.parameters import BLOOD, EUMELANIN, MELANIN, OXYGENATION, PARAMETERS, THICKNESS
 
 TERMS = 16
@@ -34,8 +35,8 @@ HALF = 60.0
 """Thickness, µm, where t / (t + HALF) is a half."""
 DARK = 0.01
 """Albedo added to the weight, so that the darkest skins do not rule the factors."""
-BAND = 1 << 18
-"""Texels decoded at a time."""
+SHIPPED = (ALIAGA2022, MEASURED2026)
+"""Tissues whose tables are stored with the package."""
 
 
 def to_axis(axis: int, value: ArrayLike) -> NDArray[np.floating]:
@@ -128,8 +129,15 @@ def load_colours(file: str | IO[bytes]) -> ColourTable:
         return ColourTable(stored["upper"], stored["lower"])
 
 
-@cache
-def colour_table() -> ColourTable:
-    """The table of `aliaga2022`, which ships."""
-    with resources.files("cutis.data").joinpath("albedo", "aliaga2022-rgb.npz").open("rb") as file:
-        return load_colours(file)
+def colour_table(tissue: Tissue = ALIAGA2022) -> ColourTable:
+    """The table of `tissue`: the one that ships where there is one, else built now (seconds)."""
+    return _colour_table(tissue)
+
+
+@lru_cache(maxsize=4)
+def _colour_table(tissue: Tissue) -> ColourTable:
+    shipped = resources.files("cutis.data").joinpath("albedo", f"{tissue.name}-rgb.npz")
+    if tissue in SHIPPED and shipped.is_file():
+        with shipped.open("rb") as file:
+            return load_colours(file)
+    return build_colours(albedo_space(tissue))

@@ -72,9 +72,8 @@ def contestants(count: int, device: str = "cpu") -> tuple[list["Timed"], list[st
         entries.append(Timed(system, "encode", lambda: encode(rgb), moved))  # type: ignore[operator]
         entries.append(Timed(system, "decode", lambda: decode(skins), moved))  # type: ignore[operator]
 
-    for name in ("default", "aliaga2022"):
-        model = load_model(name)
-        add(name, model.encode, model.decode)
+    for model in (load_model(), load_model("aliaga2022")):
+        add(model.name, model.encode, model.decode)
     if device != "cpu":
         model = load_model("aliaga2022", device)
         add(f"aliaga2022, {device}", model.encode, model.decode)

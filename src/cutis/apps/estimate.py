@@ -73,7 +73,7 @@ def estimate(
     from cutis.apps.inputs import capture_sets, companion, gaps, odd_ones
     from cutis.colour import light_conversion
     from cutis.errors import CutisError
-    from cutis.inverse import load_model
+    from cutis.inverse import load_model, model_name
     from cutis.textures import colour_space
     from cutis.textures.ocio import configured
 
@@ -81,6 +81,7 @@ def estimate(
         if model != "default":
             raise CutisError("give either --model or --method, not both")
         model = options.method_name(method)
+    model = model_name(model)  # results of another default are not these
     ocio = ocio or configured() or ""  # said to workers, who may have another $OCIO
     settings = Settings(
         white, exposure, illuminant, model, colorspace, ocio, output_colorspace, half, report,

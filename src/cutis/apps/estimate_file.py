@@ -79,7 +79,7 @@ def cover_of(part: Any, mask: "MaskFile | None", rows: slice) -> "NDArray[np.flo
 
 def calibrated(tasks: Sequence[Task], progress: Progress) -> "Calibration":
     """The calibration that captures of one set share."""
-    from cutis.inverse import calibrate
+    from cutis.inverse import calibrate, tissue_of
     from cutis.maps import Sampler
 
     how = tasks[0].settings
@@ -100,7 +100,7 @@ def calibrated(tasks: Sequence[Task], progress: Progress) -> "Calibration":
                     done += part.shape[0] * part.shape[1]
                     progress(done, total, "looking for gains")
     progress(total, total, "calibrating")
-    return calibrate(sampler.colours(), white, exposure, how.illuminant)
+    return calibrate(sampler.colours(), white, exposure, how.illuminant, tissue_of(how.model))
 
 
 def _no_colours() -> "NDArray[np.float32]":

@@ -14,6 +14,7 @@ from cutis.apps.console import err, steps
 from cutis.apps.spectra_file import read_spectra
 from cutis.errors import CutisError
 from cutis.inverse import SpectralFit, SpectralFitter
+from cutis.inverse.models import EXACT
 from cutis.optics import ALIAGA2022, MEASURED2026, NAMES, PARAMETERS, WAVELENGTHS, Parameter
 from cutis.textures import channel_writer, open_cube, replacing
 from cutis.textures.problem import problem
@@ -164,7 +165,7 @@ def fit_cube(request: Request, wavelengths: Path | None = None) -> None:
             for p in PARAMETERS
         }
         tissue = request.tissue
-        header["cutis:model"] = "default" if tissue == ALIAGA2022.name else tissue
+        header["cutis:model"] = EXACT if tissue == ALIAGA2022.name else tissue
         header["cutis:tissue"] = tissue
         header["cutis:spectra"] = cube.path.name
         header["cutis:specular"] = f"{request.specular:g}"

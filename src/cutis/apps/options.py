@@ -22,7 +22,9 @@ Exposure = Annotated[str, typer.Option("--exposure", help="none, auto, or one ga
 ModelName = Annotated[
     str,
     typer.Option(
-        "--model", help="default, aliaga2022, kubelka-munk, or a .safetensors file of weights."
+        "--model",
+        help="default, measured2026, aliaga2022-exact, aliaga2022, kubelka-munk, or a .safetensors "
+        "file of weights.",
     ),
 ]
 Method = Annotated[

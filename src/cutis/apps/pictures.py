@@ -148,10 +148,10 @@ def export_to(
             raise
         found = None
     g = order.scene.anisotropy
-    red, green, blue = (float(length) for length in mean_free_path(g))
-    everywhere = order.radius == "tissue"
-    radius = (red, green, blue) if everywhere else lambda maps: of_maps(maps, g)
     with made_folder(folder), order.opened() as skin:
+        red, green, blue = (float(length) for length in mean_free_path(g, skin.tissue))
+        everywhere = order.radius == "tissue"
+        radius = (red, green, blue) if everywhere else lambda maps: of_maps(maps, g)
         return export_material(
             skin, folder, skin.stem,
             radius=radius,
@@ -189,7 +189,8 @@ class _Feeds:
         from cutis.render.medium import mean_free_path, of_maps
 
         number, order = len(self._written), self._order
-        g, everywhere = order.scene.anisotropy, mean_free_path()
+        g = order.scene.anisotropy
+        everywhere = mean_free_path(tissue=self._skin.tissue)
         if order.radius == "maps" and self._skin.maps is None:
             raise CutisError(
                 f"{order.skin.name} is a texture; --radius maps needs its maps (NAME.skin.exr), "
@@ -244,7 +245,7 @@ def _recipe(order: Order, skin: "Skin", blender: "Blender") -> dict[str, Any]:
         "edited": [str(edit) for edit in order.edits],
         "amount": order.amount,
         "radius": order.radius,
-        "medium": [METHOD, INDEX, *facing(g), *mean_free_path(g).tolist()],
+        "medium": [METHOD, INDEX, *facing(g), *mean_free_path(g, skin.tissue).tolist()],
         "model_only": order.model_only,
         "colorspace": order.colorspace,
         "ocio": order.ocio,

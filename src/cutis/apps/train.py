@@ -11,7 +11,9 @@ from cutis.apps import options
 def train(
     recipe: Annotated[
         str,
-        typer.Argument(help="aliaga2022, aliaga2022-mean, smoke, or default (the baked one)."),
+        typer.Argument(
+            help="aliaga2022, aliaga2022-mean, smoke, or aliaga2022-exact, which is baked."
+        ),
     ] = "aliaga2022",
     output: Annotated[
         Path | None,
@@ -20,19 +22,20 @@ def train(
     epochs: Annotated[int | None, typer.Option(min=1, help="Instead of the recipe's.")] = None,
     quiet: options.Quiet = False,
 ) -> None:
-    """Train encoder and decoder, or bake the default inverse.
+    """Train encoder and decoder, or bake the exact inverse.
 
     A run that was stopped goes on where its last checkpoint was when the same command is given
-    again. Writes weights.safetensors, metrics.json, curves.csv and curves.png; for `default`,
-    default.npz.
+    again. Writes weights.safetensors, metrics.json, curves.csv and curves.png; for
+    `aliaga2022-exact`, aliaga2022-exact.npz.
 
     Example: cutis train aliaga2022 -o runs/aliaga2022
     """
     from cutis.apps.console import out, steps
     from cutis.errors import CutisError
+    from cutis.inverse.models import EXACT
 
     folder = output or Path("runs") / recipe
-    if recipe == "default":
+    if recipe == EXACT:
         options.make_folder(folder)
         from cutis.inverse.baked import bake, save_baked
         from cutis.inverse.models import shipped_encoder
@@ -40,10 +43,10 @@ def train(
 
         with steps(1, quiet) as progress:
             baked = bake(shipped_encoder(), lambda done, all_: progress.at(done, all_, "baking"))
-        with replacing(folder / "default.npz") as partial:
+        with replacing(folder / f"{recipe}.npz") as partial:
             save_baked(baked, partial)
         if not quiet:
-            out.print(f"wrote {folder / 'default.npz'}")
+            out.print(f"wrote {folder / f'{recipe}.npz'}")
         return
 
     try:
@@ -54,7 +57,7 @@ def train(
             f"training needs PyTorch ({error.name} is missing); pip install 'cutis[train]'"
         ) from None
     if recipe not in RECIPES:
-        raise CutisError(f"unknown recipe {recipe!r}; known are default, {', '.join(RECIPES)}")
+        raise CutisError(f"unknown recipe {recipe!r}; known are {EXACT}, {', '.join(RECIPES)}")
     from dataclasses import replace
 
     options.make_folder(folder)

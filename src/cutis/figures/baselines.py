@@ -11,6 +11,7 @@ from cutis.figures.measured import BANDS, measured_skins
 from cutis.figures.section import Section, table
 from cutis.figures.subjects import Cast, Subject, every_face
 from cutis.inverse import explain
+from cutis.inverse.models import EXACT
 from cutis.optics import ALIAGA2022, GITLINA2020, PARAMETERS
 
 MOST = 40_000
@@ -33,7 +34,7 @@ def draw_kubelka_munk(cast: Cast) -> Section:
         source, inside = subject.calibrated, subject.texels
         row: list[Picture] = [displayed(source)]
         squares = []
-        for name in ("kubelka-munk", "default"):
+        for name in ("kubelka-munk", EXACT):
             skin = subject.maps_by(name)
             model = skin.calibration.apply(skin.model_albedo)
             error = np.where(subject.mask[..., None] > 0, model - source, 0)

@@ -38,7 +38,7 @@ def draw(cast: Cast) -> Section:
             (
                 grid(pictures, [s.skin for s in cast.subjects],
                      ["capture", *(p.name for p in PARAMETERS)]),
-                "Maps of the default model; each from its 2nd to its 98th percentile (in the "
+                "Maps of aliaga2022-exact; each from its 2nd to its 98th percentile (in the "
                 "table: median and these).",
             ),
         ),

@@ -6,13 +6,14 @@ from numpy.typing import NDArray
 from cutis.figures.layout import displayed, grid
 from cutis.figures.section import Section, table
 from cutis.figures.subjects import Cast, Subject
+from cutis.inverse.models import EXACT
 from cutis.maps import presets
 
 METHODS = {
     "lookup-55k": "tensor, 55k",
     "lookup": "tensor, 256k",
     "aliaga2022": "network",
-    "default": "default",
+    EXACT: "exact",
 }
 SHOWN = "intermediate"
 """Skin of the subject that is drawn."""
@@ -54,7 +55,7 @@ def draw(cast: Cast) -> Section:
             "lookup55k": edited["lookup-55k"],
             "lookup": edited["lookup"],
             "network": edited["aliaga2022"],
-            "default": edited["default"],
+            "exact": edited[EXACT],
         },
         table=table(["method", "roughness, as estimated", "melanin × 3", "shades"], [first, *rows]),
         pictures=(

@@ -6,8 +6,9 @@ from cutis.colour import delta_e
 from cutis.figures.layout import displayed, grid, magnified
 from cutis.figures.section import Section, table
 from cutis.figures.subjects import Cast
+from cutis.inverse.models import EXACT
 
-METHODS = {"aliaga2022": "network", "lookup": "tensor, 256k", "default": "default"}
+METHODS = {"aliaga2022": "network", "lookup": "tensor, 256k", EXACT: "exact"}
 
 
 def draw(cast: Cast) -> Section:
@@ -36,7 +37,7 @@ def draw(cast: Cast) -> Section:
         numbers={
             "worst": max(max(row) for row in each),
             "nearer": sum(tensor < network for network, tensor, _ in each),
-            "best": sum(default < min(others) for *others, default in each),
+            "best": sum(exact < min(others) for *others, exact in each),
             "count": len(each),
         },
         table=table(["skin", "method", "MSE", "ΔE00 mean", "p95"], rows),

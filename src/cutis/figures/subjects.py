@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from cutis.colour import is_skin_colour
 from cutis.errors import CutisError
+from cutis.inverse.models import EXACT
 from cutis.maps import SkinMaps, estimate
 from cutis.textures import read_mask, read_texture
 
@@ -42,8 +43,8 @@ class Subject:
 
     @cached_property
     def maps(self) -> SkinMaps:
-        """Skin maps by the default model, white balance found automatically."""
-        return estimate(self.rgb, self.mask, white="auto")
+        """Skin maps by the exact model of the paper's tissue, white balance found automatically."""
+        return estimate(self.rgb, self.mask, white="auto", model=EXACT)
 
     def maps_by(self, model: str) -> SkinMaps:
         """Skin maps by another model under the same calibration."""

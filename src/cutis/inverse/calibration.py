@@ -25,7 +25,7 @@ from cutis.colour import light_conversion
 from cutis.errors import CutisError
 from cutis.inverse.fit import fit
 from cutis.inverse.nearest import curve_order
-from cutis.optics import from_coordinates
+from cutis.optics import ALIAGA2022, Tissue, from_coordinates
 
 SAMPLE = 1600
 """Texels that gains are judged on."""
@@ -74,7 +74,11 @@ class Calibration:
 
 
 def calibrate(
-    rgb: ArrayLike, white: White = None, exposure: Exposure = None, light: str = "D65"
+    rgb: ArrayLike,
+    white: White = None,
+    exposure: Exposure = None,
+    light: str = "D65",
+    tissue: Tissue = ALIAGA2022,
 ) -> Calibration:
     """Light and gains for masked texels `rgb` (n, 3) of linear sRGB.
 
@@ -105,9 +109,9 @@ def calibrate(
         origin = "given" if np.any(fixed != 1) else "none"
         return Calibration((red, green, blue), origin, light, conversion)
     if white == "auto":
-        found = _search(np.asarray(rgb) * fixed, np.eye(3))
+        found = _search(np.asarray(rgb) * fixed, np.eye(3), tissue)
     else:
-        found = _search(np.asarray(rgb) * fixed, np.ones((1, 3)))
+        found = _search(np.asarray(rgb) * fixed, np.ones((1, 3)), tissue)
     red, green, blue = (float(g) for g in fixed * found)
     return Calibration((red, green, blue), "auto", light, conversion)
 
@@ -124,7 +128,9 @@ def _checked(values: Sequence[float], count: int, name: str) -> NDArray[np.float
     return gains
 
 
-def _search(rgb: NDArray[np.floating], directions: NDArray[np.float64]) -> NDArray[np.float64]:
+def _search(
+    rgb: NDArray[np.floating], directions: NDArray[np.float64], tissue: Tissue
+) -> NDArray[np.float64]:
     """The best gains (3,) of the form exp(x @ directions)."""
     from scipy.optimize import minimize
 
@@ -137,7 +143,7 @@ def _search(rgb: NDArray[np.floating], directions: NDArray[np.float64]) -> NDArr
     ordered = bright[curve_order(bright.astype(np.float32))]
     places = np.linspace(0, len(ordered) - 1, min(SAMPLE, len(ordered))).astype(int)
     sample = ordered[places].astype(np.float32)
-    space = albedo_space()
+    space = albedo_space(tissue)
     start = np.array([0.35, 0.4, 0.4, 0.5, 0.5])
 
     def cost(x: NDArray[np.floating]) -> float:

@@ -1,8 +1,10 @@
 """Models by name: how a colour becomes a skin, and a skin a colour.
 
-`default` reads the baked inverse and decodes by the colour table of the albedo space;
-`aliaga2022` is the paper's pair of networks, trained by `cutis train`; `lookup` and `lookup-55k`
-are its look-up tensors of 256 000 and 55 296 skins, `kubelka-munk` the two-parameter baseline.
+`measured2026` reads the most probable measured skin from a baked table and decodes by the colour
+table of its tissue; `aliaga2022-exact` does the same with the tissue of the paper and no prior of
+measured skin. `aliaga2022` is the paper's pair of networks, trained by `cutis train`; `lookup` and
+`lookup-55k` are its look-up tensors of 256 000 and 55 296 skins, `kubelka-munk` the two-parameter
+baseline. `default` is another name of the model that is used when none is named.
 """
 
 import contextlib
@@ -21,9 +23,13 @@ from cutis.errors import CutisError
 from cutis.inverse.device import check_device, torch_network
 from cutis.inverse.lookup import SHAPES, lookup_tensor
 from cutis.inverse.network import Autoencoder, Perceptron, load_weights
+from cutis.optics import ALIAGA2022, MEASURED2026, Tissue
 
-MODELS = ("default", "aliaga2022", *SHAPES, "kubelka-munk")
-"""Names that `load_model` knows; it also takes the path of a weights file."""
+EXACT, MEASURED = "aliaga2022-exact", "measured2026"
+DEFAULT = EXACT
+"""What `default` stands for; headers and reports say the name, never `default`."""
+MODELS = tuple(dict.fromkeys((DEFAULT, EXACT, "aliaga2022", *SHAPES, "kubelka-munk")))
+"""Names that `load_model` knows, besides `default`; it also takes the path of a weights file."""
 Conversion = Callable[[NDArray[np.float32]], NDArray[np.float32]]
 BAND = 1 << 18
 """Texels converted at a time."""
@@ -34,12 +40,19 @@ class Model:
     """An inverse and its forward model.
 
     `to_skins` maps (n, 3) calibrated linear sRGB to (n, 5) parameters in their units and within
-    their ranges, `to_rgb` maps those to (n, 3) linear sRGB.
+    their ranges, `to_rgb` maps those to (n, 3) linear sRGB. `tissue` is the one whose albedo space
+    gives the spectra of its skins. `to_trust`, where there is one, maps the same colours to (n, 6):
+    the standard deviation of each parameter in its unit and the confidence, in [0, 1], that the
+    colour is one of skin. `prior_sigma` is what the standard deviations were before a colour was
+    seen, in network coordinates.
     """
 
     name: str
     to_skins: Conversion
     to_rgb: Conversion
+    tissue: Tissue = ALIAGA2022
+    to_trust: Conversion | None = None
+    prior_sigma: tuple[float, ...] | None = None
 
     def encode(self, rgb: ArrayLike) -> NDArray[np.float32]:
         """(..., 3) calibrated linear sRGB → (..., 5) parameters in their units."""
@@ -48,6 +61,14 @@ class Model:
     def decode(self, parameters: ArrayLike) -> NDArray[np.float32]:
         """(..., 5) parameters in their units → (..., 3) linear sRGB under D65."""
         return _in_bands(self.to_rgb, parameters, 3)
+
+    def trust(self, rgb: ArrayLike) -> NDArray[np.float32] | None:
+        """(..., 3) calibrated linear sRGB → (..., 6): σ of the five parameters, and confidence.
+
+        σ is in the parameter's unit: the skin's own value lies within ± 1.645 σ for nine of ten
+        skins. None where the model does not know.
+        """
+        return None if self.to_trust is None else _in_bands(self.to_trust, rgb, 6)
 
 
 def _in_bands(
@@ -78,28 +99,48 @@ def on_device(device: str) -> Iterator[None]:
 def load_model(name: str = "default", device: str | None = None) -> Model:
     """The model called `name`, or of the weights file `name`; CutisError when there is none.
 
-    Networks may run on another `device`, "cuda", which is that of `on_device` unless given; tables
-    are read by the processor. CutisError when there is no such device, or the model is a table.
+    `default` stands for DEFAULT. Networks may run on another `device`, "cuda", which is that of
+    `on_device` unless given; tables are read by the processor. CutisError when there is no such
+    device, or the model is a table.
     """
-    return _load(name, _DEVICE.get() if device is None else device)
+    return _load(model_name(name), _DEVICE.get() if device is None else device)
+
+
+def model_name(name: str) -> str:
+    """The name itself, or what `default` stands for."""
+    return DEFAULT if name == "default" else name
+
+
+def stored_name(name: str) -> str:
+    """The model of maps whose header says `name`: `default` is from before there was another."""
+    return EXACT if name == "default" else name
+
+
+def tissue_of(name: str) -> Tissue:
+    """The tissue whose albedo space gives the spectra of the skins of a model."""
+    return MEASURED2026 if model_name(name) == MEASURED else ALIAGA2022
 
 
 @cache
 def _load(name: str, device: str) -> Model:
     if device != "cpu":
         check_device(device)
-        if name in (*SHAPES, "default", "kubelka-munk"):
+        if name in (*SHAPES, EXACT, MEASURED, "kubelka-munk"):
             raise CutisError(
                 f"the model {name} is a table, read by the processor; --device cuda is for "
                 "aliaga2022 and files of weights"
             )
     weights = resources.files("cutis.data").joinpath("weights")
-    if name == "default":
+    if name in (EXACT, MEASURED):
         from cutis.inverse.baked import load_baked
 
-        with resources.as_file(weights.joinpath("default.npz")) as file:
+        table = weights.joinpath(f"{name}.npz")
+        if not table.is_file():
+            raise CutisError(f"the model {name} did not come with this copy of cutis; use {EXACT}")
+        with resources.as_file(table) as file:
             baked = load_baked(file)
-        return Model(name, baked.skins, colour_table().rgb)
+        tissue = tissue_of(name)
+        return Model(name, baked.skins, colour_table(tissue).rgb, tissue)
     if name in SHAPES:
         tensor = lookup_tensor(name)
         return Model(name, _in_units(tensor.encode), tensor.decode)
@@ -116,7 +157,7 @@ def _load(name: str, device: str) -> Model:
 
 
 def shipped_encoder() -> Perceptron:
-    """The encoder of `aliaga2022`, on which the default inverse is baked."""
+    """The encoder of `aliaga2022`, on which `aliaga2022-exact` is baked."""
     return networks("aliaga2022").encoder
 
 

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from cutis.errors import CutisError
 from cutis.inverse.calibration import Calibration, Exposure, White, calibrate
-from cutis.inverse.models import load_model
+from cutis.inverse.models import load_model, tissue_of
 from cutis.maps.files import source_note
 from cutis.maps.sampler import Sampler
 from cutis.maps.skin_maps import SkinMaps
@@ -37,7 +37,7 @@ def estimate(
     sampler = Sampler(cover.size)
     while not sampler.enough():
         sampler.add(0, source, cover)
-    calibration = calibrate(sampler.colours(), white, exposure, illuminant)
+    calibration = calibrate(sampler.colours(), white, exposure, illuminant, tissue_of(model))
     maps: dict[str, Any] = {name: np.zeros(cover.shape, dtype=np.float32) for name in NAMES}
     for rows in bands(cover.shape):
         for name, values in estimate_rows(source[rows], cover[rows], calibration, model).items():

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 import cutis.textures as textures
 from cutis.errors import CutisError
 from cutis.inverse.calibration import Calibration
+from cutis.inverse.models import stored_name
 from cutis.maps.skin_maps import SkinMaps
 from cutis.optics import NAMES, PARAMETERS, Parameter
 from cutis.textures.closing import Closing
@@ -123,7 +124,7 @@ class MapsFile(Closing):
             raise CutisError(f"{self.path.name}: its header is damaged; estimate again") from error
         self.edits = tuple(edit for edit, _ in edits)
         self.clamped = tuple(clamped for _, clamped in edits)
-        self.model = notes.pop("model", "default")
+        self.model = stored_name(notes.pop("model", "default"))
         self.provenance = {key: value for key, value in notes.items() if key not in NAMES}
         config = self.provenance.get("source_ocio")
         if config and "://" not in config:

@@ -8,6 +8,7 @@ import numpy as np
 
 from cutis.errors import CutisError
 from cutis.inverse.calibration import Calibration
+from cutis.inverse.models import tissue_of
 from cutis.maps.edits import Edit
 from cutis.maps.lut import Space, edit_lut
 from cutis.maps.recolouring import recolouring, title
@@ -39,7 +40,7 @@ def export_lut(
         plain = edit_lut(edit, size, space)
         lut_files.write_cube(path, plain.table, plain.shaper, text)
         return text
-    lut = skin_lut(edit, size, space, calibration)
+    lut = skin_lut(edit, size, space, calibration, tissue_of(model))
     undone = np.linalg.inv(lut.matrix)
     operators = [
         lut_files.logarithm(OFFSET),

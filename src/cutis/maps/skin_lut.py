@@ -22,6 +22,7 @@ from cutis.errors import CutisError
 from cutis.inverse.calibration import Calibration
 from cutis.maps.lut import LARGEST, Space, is_linear
 from cutis.maps.recolouring import Recolouring
+from cutis.optics import ALIAGA2022, Tissue
 
 Array = NDArray[np.floating]
 
@@ -66,12 +67,16 @@ def is_encoded(space: Space) -> bool:
 
 
 def skin_lut(
-    edit: Recolouring, size: int, space: Space, calibration: Calibration | None = None
+    edit: Recolouring,
+    size: int,
+    space: Space,
+    calibration: Calibration | None = None,
+    tissue: Tissue = ALIAGA2022,
 ) -> SkinLut:
     """The chain of an edit (`recolouring`) for albedos stored in `space`, values from 0 to 4.
 
-    `calibration` says where skin lies in captured colours. Raises CutisError for sizes outside
-    SMALLEST to LARGEST, and spaces that are neither linear nor encoded by the sRGB curve.
+    `calibration` and `tissue` say where skin lies in captured colours. Raises CutisError for sizes
+    outside SMALLEST to LARGEST, and spaces that are neither linear nor encoded by the sRGB curve.
     """
     if not SMALLEST <= size <= LARGEST:
         raise CutisError(f"a .clf has {SMALLEST} to {LARGEST} nodes along a side, not {size}")
@@ -82,7 +87,7 @@ def skin_lut(
         )
     to_srgb = np.asarray(space.to_linear_srgb(np.eye(3)), dtype=np.float64)  # rows: primaries
     from_srgb = np.linalg.inv(to_srgb)
-    first, step, starts, ends = _axes(calibration or Calibration(), from_srgb)
+    first, step, starts, ends = _axes(calibration or Calibration(), from_srgb, tissue)
     matrix = TO_UVW / (STEPS * step)[:, None]
     shift = -first / (STEPS * step)
     cell = 1 / (size - 1)
@@ -135,12 +140,14 @@ def _grid(size: int) -> NDArray[np.int64]:
     return np.indices((size, size, size)).reshape(3, -1).T
 
 
-def _axes(known: Calibration, from_srgb: Array) -> tuple[Array, Array, Array, Array]:
+def _axes(
+    known: Calibration, from_srgb: Array, tissue: Tissue
+) -> tuple[Array, Array, Array, Array]:
     """First value and step (3,) of the curves over u, v, w; their steps at which skin starts, ends.
 
     Skin is all of the albedo space under the light of the capture.
     """
-    skins = known.undo(albedo_space().rgb(halton(20_000, 3))) @ from_srgb
+    skins = known.undo(albedo_space(tissue).rgb(halton(20_000, 3))) @ from_srgb
     logs = np.log(np.maximum(skins, 0) + OFFSET) @ TO_UVW.T
     low, high = logs.min(axis=0), logs.max(axis=0)
     low[0] -= 1.0  # creases

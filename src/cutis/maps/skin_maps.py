@@ -11,11 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from cutis.errors import CutisError
 from cutis.inverse.calibration import Calibration
-from cutis.inverse.models import load_model
+from cutis.inverse.models import load_model, model_name, tissue_of
 from cutis.maps.edits import Edit
 from cutis.maps.patches import patches
 from cutis.maps.statistics import MapStatistics, coordinates
-from cutis.optics import NAMES, parameter
+from cutis.optics import NAMES, Tissue, parameter
 from cutis.textures.texture import Texture, bands
 
 Map = NDArray[np.float32]
@@ -29,12 +29,12 @@ class SkinMaps:
     """Five maps of what a skin is made of, float32 (H, W), in the units of `optics.PARAMETERS`.
 
     `mask` (H, W) in [0, 1] says where they hold; maps are 0 where it is 0. `calibration` was
-    applied to the capture before the estimate, by the model called `model`. `source` is the
-    capture, linear sRGB (H, W, 3), or None when only the maps were loaded. `original` is the
-    estimate that this was edited from, None for an estimate itself; `edits` what was done since,
-    and `clamped` how many texels each edit pushed against the end of a range. `provenance` is
-    free text for the file header. Of some rows of a larger image, `first_row` is the number of the
-    first and `whole` the (H, W) of all.
+    applied to the capture before the estimate, by the model called `model` (the name that `default`
+    stands for, if that is given). `source` is the capture, linear sRGB (H, W, 3), or None when only
+    the maps were loaded. `original` is the estimate that this was edited from, None for an estimate
+    itself; `edits` what was done since, and `clamped` how many texels each edit pushed against the
+    end of a range. `provenance` is free text for the file header. Of some rows of a larger image,
+    `first_row` is the number of the first and `whole` the (H, W) of all.
 
     All arrays are read-only: a map changed in place would not count as an edit.
     """
@@ -56,6 +56,7 @@ class SkinMaps:
     whole: tuple[int, int] | None = None
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "model", model_name(self.model))
         for name in (*NAMES, "mask", "source"):
             values = getattr(self, name)
             if values is None:
@@ -71,6 +72,11 @@ class SkinMaps:
     def shape(self) -> tuple[int, int]:
         """Height and width in texels."""
         return self.melanin.shape[0], self.melanin.shape[1]
+
+    @property
+    def tissue(self) -> Tissue:
+        """The tissue that these skins are of: that of the model."""
+        return tissue_of(self.model)
 
     def parameters(self, rows: slice | None = None) -> Map:
         """(H, W, 5) parameters, or those of some rows."""
@@ -248,7 +254,9 @@ class SkinMaps:
         return result
 
     def reflectance(self, rows: slice | None = None) -> Map:
-        """(H, W, 41) reflectance in the exact albedo space at `optics.WAVELENGTHS`, 0 off the mask.
+        """(H, W, 41) reflectance at `optics.WAVELENGTHS`, 0 off the mask.
+
+        It is that of the exact albedo space of `tissue`.
 
         Of the maps alone: neither calibration nor what the model does not explain is in it.
 
@@ -258,7 +266,7 @@ class SkinMaps:
 
         skins = self.parameters(rows)
         inside = self.mask[slice(None) if rows is None else rows] > 0
-        spectra = albedo_space().reflectance(skins[inside])
+        spectra = albedo_space(self.tissue).reflectance(skins[inside])
         result = np.zeros((*skins.shape[:2], spectra.shape[-1]), dtype=np.float32)
         result[inside] = spectra
         return result

@@ -53,9 +53,13 @@ def mean_free_path_in(
 
 
 def of_maps(
-    skin: SkinMaps, anisotropy: float = 0.0, tissue: Tissue = ALIAGA2022
+    skin: SkinMaps, anisotropy: float = 0.0, tissue: Tissue | None = None
 ) -> NDArray[np.float32]:
-    """(H, W, 3) `mean_free_path_in` of every texel, from a table; off the mask `mean_free_path`."""
+    """(H, W, 3) `mean_free_path_in` of every texel, from a table; off the mask `mean_free_path`.
+
+    `tissue` is that of the maps unless given.
+    """
+    tissue = skin.tissue if tissue is None else tissue
     table = _table(tissue)
     place = np.stack([
         np.sqrt(np.sqrt(np.clip(skin.blood, 0, 1))) * (BLOOD - 1),

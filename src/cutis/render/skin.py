@@ -14,7 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutis.errors import CutisError
+from cutis.inverse import tissue_of
 from cutis.maps import Edit, MapsFile, SkinMaps, find_source, open_source
+from cutis.optics import Tissue
 from cutis.textures import MaskFile, TextureFile
 from cutis.textures.closing import Closing
 
@@ -77,6 +79,11 @@ class Skin(Closing):
         self.capture = open_source(notes, path)
         if self.capture.shape != self.shape:
             raise CutisError(f"{path}: the texture is {self.capture.shape}, the maps {self.shape}")
+
+    @property
+    def tissue(self) -> Tissue:
+        """The tissue of the maps' model; of a texture, that of the default model."""
+        return tissue_of("default" if self.maps is None else self.maps.model)
 
     @property
     def stem(self) -> str:
