@@ -5,16 +5,16 @@ import pytest
 
 from cutis.albedo.rare import rare_ratio
 from cutis.errors import CutisError
-from cutis.inverse.models import load_model
+from cutis.inverse.models import Model, load_model
 from cutis.maps import Edit, estimate, load_maps, presets, save_maps
 from cutis.maps.recolouring import recolouring
-from cutis.optics import NAMES, RARE_NAMES, WAVELENGTHS
+from cutis.optics import ALIAGA2022, MEASURED2026, NAMES, RARE_NAMES, WAVELENGTHS
 from cutis.textures import read_channels
 
 
-@pytest.fixture(scope="module")
-def skin(face_rgb, face_mask):
-    return estimate(face_rgb, face_mask)
+@pytest.fixture(scope="module", params=["aliaga2022-exact", "aliaga2022"])
+def skin(request, face_rgb, face_mask):
+    return estimate(face_rgb, face_mask, model=request.param)
 
 
 def test_they_are_absent_until_an_edit_sets_them(skin):
@@ -45,6 +45,19 @@ def test_colours_change_by_the_ratio_of_the_tissue(skin, face_rgb):
     cover = skin.mask[inside][:, None]
     expected = face_rgb[inside] * (1 + cover * (ratio - 1))
     np.testing.assert_allclose(ill.albedo()[inside], expected, rtol=1e-4, atol=1e-6)
+
+
+def test_a_model_takes_the_ratio_of_its_own_tissue():
+    def grey(skins):
+        return np.full((len(skins), 3), 0.5, np.float32)
+
+    model = Model("grey", grey, grey, MEASURED2026)
+    skins = np.array([[0.02, 0.02, 80, 0.7, 0.7, 0.03, 0.01, 0.2]] * 2, np.float32)
+    skins[1, 5:] = 0
+    colours = model.decode(skins)
+    np.testing.assert_array_equal(colours, 0.5 * rare_ratio(MEASURED2026, skins))
+    assert not np.allclose(colours[0], 0.5 * rare_ratio(ALIAGA2022, skins)[0], atol=1e-3)
+    assert np.all(colours[1] == 0.5)
 
 
 def test_presets_look_like_what_they_are_called(skin, face_rgb):
