@@ -8,7 +8,6 @@ Docs: docs/decisions/0022-measured2026.md.
 """
 
 import argparse
-import csv
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
@@ -19,9 +18,10 @@ from calibration_kernel import dimensionless_table, fit_skins, reduced
 from scipy.stats import qmc
 
 from cutis.colour import ita, reflectance_to_rgb
+from cutis.figures.measured import BANDS, read_skins
 from cutis.optics import ALIAGA2022, MEASURED2026, Tissue, from_coordinates
 
-LAM = np.arange(400.0, 701.0, 10.0)
+LAM = BANDS
 PULL = 5.0
 RANGES = {
     # cm⁻¹ at 500 nm and slope of skin [jacques2013]; of epidermis, dermis over it [salomatina2006]
@@ -74,22 +74,9 @@ Array = np.ndarray
 class Study:
     """Spectra (m, 31) with their origins and groups, and the fit of constants to them."""
 
-    def __init__(self, folder: Path) -> None:
-        spectra, origins, groups = [], [], []
-        with (folder / "issa_half_a.csv").open(encoding="utf-8") as file:
-            for row in csv.DictReader(line for line in file if not line.startswith("#")):
-                if row["qc"] == "0":
-                    spectra.append([float(row[f"{lam:g}"]) for lam in LAM])
-                    origins.append(int(row["origin"]))
-                    groups.append(row["group"])
-        with (folder / "nist_forearm_half_a.csv").open(encoding="utf-8") as file:
-            lines = [line for line in file if not line.startswith("#")]
-        table = np.array([[float(cell) for cell in line.split(",")] for line in lines[1:]])
-        spectra += [np.interp(LAM, table[:, 0], column) for column in table[:, 1:].T]
-        nist = table.shape[1] - 1
-        self.spectra = np.array(spectra)
-        self.origins = np.array(origins + [12] * nist)
-        self.groups = np.array(groups + ["NIST"] * nist)
+    def __init__(self, data: Path) -> None:
+        skins = read_skins(data)
+        self.spectra, self.origins, self.groups = skins.spectra, skins.origins, skins.groups
         self.tables: dict[tuple[int, float], Array] = {}
 
     def sample(self, count: int, without: int | None = None, seed: int = 0) -> Array:
@@ -257,9 +244,9 @@ def by_colour(study: Study, rows: Array, skins: Array) -> None:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    default = Path(__file__).parents[2] / "shared" / "data" / "spectra" / "measured"
-    parser.add_argument("folder", type=Path, nargs="?", default=default)
-    study = Study(parser.parse_args().folder)
+    default = Path(__file__).parents[2] / "shared" / "data"
+    parser.add_argument("data", type=Path, nargs="?", default=default)
+    study = Study(parser.parse_args().data)
     test, train = study.eight_groups(), study.sample(60)
     issa = np.flatnonzero(study.origins < 12)
     print("| constants | mean RMSE | worst bias, nm | melanin | blood | thickness | oxygenation |")

@@ -24,14 +24,14 @@ from numpy.typing import ArrayLike, NDArray
 from cutis.albedo import AlbedoSpace
 from cutis.colour import delta_e
 from cutis.inverse.fit import fit, logistic
-from cutis.optics import from_coordinates
+from cutis.optics import PARAMETERS, from_coordinates
 
 Array = NDArray[np.float64]
 DARKEST = 1e-4
 """Albedo that logarithms are taken of at least."""
 LOGIT = 6.0
 """Bound on the expected logits."""
-TOLERANCE = 0.01
+TOLERANCE = 0.0015
 """Relative colour error worth one standard deviation of the prior (see `fit.py`)."""
 UNLIKE = 1.5
 """Multiple of `radius` at which colours are half as likely to be skin."""
@@ -97,6 +97,16 @@ class SkinPrior:
     def _whitened(self, colours: ArrayLike) -> Array:
         rgb = np.asarray(colours, dtype=np.float64)
         return (np.log(np.maximum(rgb, DARKEST)) - self.centre) @ self.whitening.T
+
+
+def unit_slopes(coordinates: Array) -> Array:
+    """(n, 5) slopes of parameters, in their units, by coordinates."""
+    slopes = np.empty_like(coordinates)
+    for i, known in enumerate(PARAMETERS):
+        low, high = known.low ** (1 / known.root), known.high ** (1 / known.root)
+        root = low + coordinates[:, i] * (high - low)
+        slopes[:, i] = known.root * root ** (known.root - 1) * (high - low)
+    return slopes
 
 
 def save_prior(prior: SkinPrior, file: Path) -> None:

@@ -24,9 +24,9 @@ from cutis.albedo import AlbedoSpace, albedo_space
 from cutis.albedo.sampled import SampledSpace
 from cutis.colour import ita, reflectance_to_rgb
 from cutis.inverse.fit import logit
-from cutis.inverse.prior import DARKEST, TOLERANCE, SkinPrior
+from cutis.inverse.prior import DARKEST, TOLERANCE, SkinPrior, unit_slopes
 from cutis.inverse.spectral_fit import SpectralFitter
-from cutis.optics import PARAMETERS, Tissue, from_coordinates, to_coordinates
+from cutis.optics import Tissue, from_coordinates, to_coordinates
 
 Array = NDArray[np.float64]
 ITA_BANDS = (-30.0, 10.0, 28.0, 41.0, 55.0)
@@ -206,16 +206,6 @@ class _Learner:
         u = prior.skins(self.space, self.colours[rows]).astype(np.float64)
         wrong = from_coordinates(self.fitted[rows]) - from_coordinates(u)
         return np.asarray(np.abs(wrong) / unit_slopes(u))
-
-
-def unit_slopes(coordinates: Array) -> Array:
-    """(n, 5) slopes of parameters, in their units, by coordinates."""
-    slopes = np.empty_like(coordinates)
-    for i, known in enumerate(PARAMETERS):
-        low, high = known.low ** (1 / known.root), known.high ** (1 / known.root)
-        root = low + coordinates[:, i] * (high - low)
-        slopes[:, i] = known.root * root ** (known.root - 1) * (high - low)
-    return slopes
 
 
 def _quantiles(terms: Array, values: Array, weights: Array, share: float) -> Array:
