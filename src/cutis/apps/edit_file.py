@@ -72,7 +72,7 @@ def edit_file(job: Job, progress: "Progress") -> Edited:
         inside, changed, marked, clamped = 0, 0, False, None
         writer = stack.enter_context(texture_writer(job.output, texture, job.space))
         for rows in texture.bands():
-            skin = replace(maps.rows(rows), model=model)
+            skin = replace(maps.rows(rows, trust=False), model=model)
             where = None if mask is None else mask.rows(rows)
             edited = skin.apply(job.edits, where, amount=job.amount)
             part = texture.rows(rows)
@@ -93,10 +93,8 @@ def edit_file(job: Job, progress: "Progress") -> Edited:
         names = edited.edits
         if job.save_maps is not None:
             touched = {edit.parameter for edit in job.edits} | set(maps.changed)
-            like = replace(
-                blank(maps.calibration, model, source_note(texture)), edits=names,
-                clamped=(*maps.clamped, *told),
-            )  # fmt: skip
+            like = blank(maps.calibration, model, source_note(texture), maps.sigmas, maps.confident)
+            like = replace(like, edits=names, clamped=(*maps.clamped, *told))
             put = stack.enter_context(
                 maps_writer(job.save_maps, like, shape, "float", sorted(touched))
             )

@@ -34,7 +34,9 @@ class SkinMaps:
     the maps were loaded. `original` is the estimate that this was edited from, None for an estimate
     itself; `edits` what was done since, and `clamped` how many texels each edit pushed against the
     end of a range. `provenance` is free text for the file header. Of some rows of a larger image,
-    `first_row` is the number of the first and `whole` the (H, W) of all.
+    `first_row` is the number of the first and `whole` the (H, W) of all. `sigmas` has the standard
+    deviation (H, W) of maps, by name and in their units, where the model knows it, and
+    `confidence` (H, W) in [0, 1] how likely each colour is one of skin; see `sigma`.
 
     All arrays are read-only: a map changed in place would not count as an edit.
     """
@@ -54,19 +56,25 @@ class SkinMaps:
     provenance: Mapping[str, str] = field(default_factory=dict)
     first_row: int = 0
     whole: tuple[int, int] | None = None
+    sigmas: Mapping[str, Map] = field(default_factory=dict)
+    confidence: Map | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "model", model_name(self.model))
-        for name in (*NAMES, "mask", "source"):
-            values = getattr(self, name)
-            if values is None:
-                continue
-            view = np.asarray(values, dtype=np.float32).view()
-            view.flags.writeable = False
-            object.__setattr__(self, name, view)
-            expected = (*self.melanin.shape, 3) if name == "source" else self.melanin.shape
-            if view.shape != expected or self.melanin.ndim != 2:
-                raise CutisError(f"{name} is {view.shape}, the maps are {self.melanin.shape}")
+        for name in (*NAMES, "mask", "source", "confidence"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, self._view(name, getattr(self, name)))
+        sigmas = {name: self._view(f"σ of {name}", found) for name, found in self.sigmas.items()}
+        object.__setattr__(self, "sigmas", sigmas)
+
+    def _view(self, name: str, values: Map) -> Map:
+        """A view that cannot be written to; CutisError where it is of another size than the maps"""
+        view = np.asarray(values, dtype=np.float32).view()
+        view.flags.writeable = False
+        shape = np.shape(self.melanin)
+        if view.shape != ((*shape, 3) if name == "source" else shape) or len(shape) != 2:
+            raise CutisError(f"{name} is {view.shape}, the maps are {shape}")
+        return view
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -94,6 +102,8 @@ class SkinMaps:
             original=None if self.original is None else self.original.rows(rows),
             first_row=self.first_row + first,
             whole=self.whole or self.shape,
+            sigmas={name: sigma[rows] for name, sigma in self.sigmas.items()},
+            confidence=None if self.confidence is None else self.confidence[rows],
         )
         if "model_albedo" in self.__dict__:  # decoded already
             result.__dict__["model_albedo"] = self.model_albedo[rows]
@@ -102,6 +112,18 @@ class SkinMaps:
     def coordinates(self) -> Map:
         """(H, W, 5) network coordinates where the mask is not 0, else 0."""
         return coordinates([getattr(self, name) for name in NAMES], self.mask > 0)
+
+    def sigma(self, name: str) -> Map:
+        """(H, W) standard deviation of a map in its unit, 0 off the mask: `skin.sigma("melanin")`.
+
+        The skin's own value lies within ± 1.645 σ for nine of ten skins (docs/models.md). Edits
+        carry it on: a factor scales it, an offset leaves it, a set value has 0. Raises CutisError
+        for maps without: only some models know it.
+        """
+        if name not in self.sigmas:
+            parameter(name)
+            raise CutisError(f"these maps have no σ of {name}: {self.model} does not know it")
+        return self.sigmas[name]
 
     # editing --------------------------------------------------------------------------------
 
@@ -149,6 +171,9 @@ class SkinMaps:
             weight = everywhere * self._patches() if procedural else everywhere
             edited, clamped = edit(getattr(result, edit.parameter), weight)
             changes: dict[str, Any] = {edit.parameter: edited}
+            if edit.parameter in result.sigmas:
+                sigma = edit.sigma(result.sigmas[edit.parameter], weight)
+                changes["sigmas"] = {**result.sigmas, edit.parameter: sigma}
             result = replace(
                 result,
                 **changes,
