@@ -27,6 +27,7 @@ class Job:
     model: str | None = None
     space: "Space | None" = None
     save_maps: Path | None = None
+    illuminant: str | None = None
 
     def tile(self, number: int, tile_of: Callable[[Path, int], Path]) -> "Job":
         """The same for one tile of a UDIM set."""
@@ -76,7 +77,7 @@ def edit_file(job: Job, progress: "Progress") -> Edited:
             where = None if mask is None else mask.rows(rows)
             edited = skin.apply(job.edits, where, amount=job.amount)
             part = texture.rows(rows)
-            result = edited.retouch(part)
+            result = edited.retouch(part, job.illuminant)
             writer.write(result)
             inside += int(np.count_nonzero(skin.mask))
             marked = marked or where is None or bool((where > MaskFile.BLACK).any())

@@ -4,7 +4,7 @@ import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,6 +17,10 @@ from cutis.maps.patches import patches
 from cutis.maps.statistics import MapStatistics, coordinates
 from cutis.optics import NAMES, Tissue, parameter
 from cutis.textures.texture import Texture, bands
+
+if TYPE_CHECKING:
+    from cutis.albedo import AlbedoSpace
+    from cutis.maps.relighting import Relighting
 
 Map = NDArray[np.float32]
 
@@ -221,32 +225,57 @@ class SkinMaps:
         result.flags.writeable = False  # it is kept
         return result
 
-    def albedo(self) -> Map:
-        """(H, W, 3) linear sRGB as captured, edits included.
+    def albedo(self, illuminant: str | None = None) -> Map:
+        """(H, W, 3) linear sRGB as captured, edits included; relit where `illuminant` is given.
 
         What the model does not explain (hair, eyes, detail) rides along as the ratio of capture
         to model; texels that no edit changed are those of the capture, bit for bit. Without the
         capture, the model's albedo.
+
+        `illuminant`, a name or file that `colour.illuminant` takes, shows the skin under that light
+        and balanced on it (`maps.relighting`); the light of the capture changes nothing.
         """
+        relight = self._relighting(illuminant)
         if self.source is None:
-            return self.model_albedo.copy()
+            return self.model_albedo.copy() if relight is None else relight.alone(self)
+        if relight is not None:
+            parts = (relight(self.rows(rows), self.source[rows]) for rows in bands(self.shape))
+            return np.concatenate(list(parts))
         result = self.source.copy()
         for rows in bands(self.shape):
             changed, colours = self._changes(rows, self.source[rows])
             result[rows][changed] = colours
         return result
 
-    def retouch(self, texture: Texture) -> Texture:
-        """The texture with the edits in it: same format, depth and space, other texels verbatim."""
+    def relit(self, illuminant: str) -> Map:
+        """(H, W, 3) linear sRGB under another light, edits included: `albedo(illuminant)`."""
+        return self.albedo(illuminant)
+
+    def retouch(self, texture: Texture, illuminant: str | None = None) -> Texture:
+        """The texture with the edits in it: same format, depth and space, other texels verbatim.
+
+        With an `illuminant` all texels are as `albedo(illuminant)` shows them.
+        """
         if texture.shape != self.shape:
             raise CutisError(f"the texture is {texture.shape}, the maps are {self.shape}")
-        everywhere = np.zeros(self.shape, dtype=bool)
+        relight = self._relighting(illuminant)
+        everywhere = np.full(self.shape, relight is not None)
         colours = np.zeros((*self.shape, 3), dtype=np.float32)
         for rows in bands(self.shape):
+            if relight is not None:
+                colours[rows] = relight(self.rows(rows), texture.rows(rows).linear())
+                continue
             changed, edited = self._changes(rows, texture.rows(rows).linear())
             everywhere[rows] = changed
             colours[rows][changed] = edited
         return texture.with_linear(colours, everywhere)
+
+    def _relighting(self, light: str | None) -> "Relighting | None":
+        """How to relight; None where the light is that of the capture."""
+        from cutis.maps.relighting import Relighting
+
+        found = None if light is None else Relighting(self.calibration, self.tissue, light)
+        return found if found is not None and found.changes else None
 
     def _changes(self, rows: slice, source: Map) -> tuple[NDArray[np.bool_], Map]:
         """Texels of some rows that edits changed, and their new colours (n, 3)."""
@@ -287,14 +316,26 @@ class SkinMaps:
 
         A whole 2048² face takes 0.7 GB; give `rows` to go in bands.
         """
+        part = self if rows is None else self.rows(rows)
+        space, skins = part._exact()
+        spectra = space.reflectance(skins)
+        result = np.zeros((*part.shape, spectra.shape[-1]), dtype=np.float32)
+        result[part.mask > 0] = spectra
+        return result
+
+    def colours_under(self, light: str) -> Map:
+        """(n, 3) linear sRGB of the texels of the mask, as `reflectance` has it under `light`.
+
+        Of the maps alone, and balanced on the light.
+        """
+        space, skins = self._exact()
+        return space.rgb(skins, light)
+
+    def _exact(self) -> "tuple[AlbedoSpace, Map]":
+        """The exact albedo space, and the skins (n, 5) of the texels of the mask."""
         from cutis.albedo import albedo_space
 
-        skins = self.parameters(rows)
-        inside = self.mask[slice(None) if rows is None else rows] > 0
-        spectra = albedo_space(self.tissue).reflectance(skins[inside])
-        result = np.zeros((*skins.shape[:2], spectra.shape[-1]), dtype=np.float32)
-        result[inside] = spectra
-        return result
+        return albedo_space(self.tissue), self.parameters()[self.mask > 0]
 
     def statistics(self) -> Iterator[tuple[str, str, float, float, float]]:
         """(name, unit, 5th percentile, median, 95th percentile) of each map inside the mask."""
