@@ -8,7 +8,15 @@ import pytest
 
 from cutis.errors import CutisError
 from cutis.figures import FIGURES, cast, lights, write_page
-from cutis.figures.measured import BANDS, measured_skins
+from cutis.figures.measured import (
+    BANDS,
+    GROUPS,
+    NIST,
+    ORIGINS,
+    SURFACE,
+    measured_skins,
+    read_skins,
+)
 from cutis.figures.quantisation import roughness
 from cutis.figures.subjects import data_folder, every_face
 
@@ -93,6 +101,22 @@ def test_measured_skins(shared_data):
     assert len(skins) > 7000
     assert -0.03 < skins.min() < skins.max() < 1
     assert 0.2 < np.median(skins[:, np.searchsorted(BANDS, 550)]) < 0.3
+
+
+def test_measured_skins_say_who_they_are_of(shared_data):
+    skins = read_skins(shared_data)
+    assert skins.spectra.shape == (len(skins.subjects), len(BANDS))
+    assert set(skins.origins) == set(ORIGINS)
+    assert set(skins.groups) == set(GROUPS)
+    assert (skins.origins == NIST).sum() == 50 == len(set(skins.subjects[skins.origins == NIST]))
+    assert len(set(skins.subjects)) == 1054 + 50  # a person has one origin
+    assert all(len(set(skins.origins[skins.subjects == s])) == 1 for s in set(skins.subjects))
+    assert np.allclose(SURFACE + (1 - SURFACE) * measured_skins(shared_data), skins.spectra)
+    first = skins.some([0, -1])
+    assert list(first.origins) == [1, NIST]
+    assert list(first.groups) == ["CA", "NIST"]
+    assert first.spectra[0, 0] == 0.1712
+    assert len(first.bands) == 2
 
 
 def test_every_face_of_the_larger_data(shared_data):

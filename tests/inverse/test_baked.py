@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from cutis.albedo.spectral_table import spline_basis
-from cutis.inverse.baked import CELLS, HIGH, LOW, Baked, load_baked, save_baked
+from cutis.inverse.baked import Baked, load_baked, save_baked
 from cutis.optics import PARAMETERS, from_coordinates
 
 RNG = np.random.default_rng(8)
@@ -33,9 +33,10 @@ def plain(baked: Baked, rgb: np.ndarray) -> np.ndarray:
     """(n, 5) coordinates by NumPy, in float64."""
     red, green, blue = np.maximum(rgb.astype(float), 1e-6).T
     chart = green**0.25, red / (red + green), blue / (blue + green)
+    ends = baked.chart.low, baked.chart.high, baked.chart.cells
     bases = [
         spline_basis((x - low) / (high - low), cells)
-        for x, low, high, cells in zip(chart, LOW, HIGH, CELLS, strict=True)
+        for x, low, high, cells in zip(chart, *ends, strict=True)
     ]
     return np.einsum("na,nb,nc,abcp->np", *bases, baked.coefficients, optimize=True).clip(0, 1)
 

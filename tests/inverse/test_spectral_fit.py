@@ -230,10 +230,8 @@ def test_measured_skins_of_eight_groups(shared_data):
     calibrated = SpectralFitter(VISIBLE, MEASURED2026, specular=0.028)
     better = calibrated.fit(spectra[chosen])
     bias = (calibrated.reflectance(better.values) - spectra[chosen]).mean(axis=0)
-    assert better.rmse.mean() < 0.0045
-    assert np.abs(bias).max() < 0.006
-    shifted = SpectralFitter(VISIBLE, MEASURED2026, specular=0.028, shift=1.8).fit(spectra[chosen])
-    assert shifted.rmse.mean() < 0.004
+    assert better.rmse.mean() < 0.0038
+    assert np.abs(bias).max() < 0.003
 
     brute = Everywhere(VISIBLE, specular=0.028).fit(spectra[chosen[::4]])
     deeper = found.rmse[::4] - brute.rmse

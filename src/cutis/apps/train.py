@@ -1,5 +1,6 @@
 """`cutis train`: the weights and the baked inverse that ship, and your own."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
@@ -12,7 +13,7 @@ def train(
     recipe: Annotated[
         str,
         typer.Argument(
-            help="aliaga2022, aliaga2022-mean, smoke, or aliaga2022-exact, which is baked."
+            help="aliaga2022, aliaga2022-mean, smoke; measured2026 and aliaga2022-exact are baked."
         ),
     ] = "aliaga2022",
     output: Annotated[
@@ -22,31 +23,25 @@ def train(
     epochs: Annotated[int | None, typer.Option(min=1, help="Instead of the recipe's.")] = None,
     quiet: options.Quiet = False,
 ) -> None:
-    """Train encoder and decoder, or bake the exact inverse.
+    """Train encoder and decoder, or bake an inverse.
 
     A run that was stopped goes on where its last checkpoint was when the same command is given
-    again. Writes weights.safetensors, metrics.json, curves.csv and curves.png; for
-    `aliaga2022-exact`, aliaga2022-exact.npz.
+    again. Writes weights.safetensors, metrics.json, curves.csv and curves.png; for those that are
+    baked, RECIPE.npz, and for `measured2026`, from the prior that ships, measured2026-trust.npz.
 
     Example: cutis train aliaga2022 -o runs/aliaga2022
     """
     from cutis.apps.console import out, steps
     from cutis.errors import CutisError
-    from cutis.inverse.models import EXACT
+    from cutis.inverse.models import EXACT, MEASURED
 
     folder = output or Path("runs") / recipe
-    if recipe == EXACT:
+    if recipe in (EXACT, MEASURED):
         options.make_folder(folder)
-        from cutis.inverse.baked import bake, save_baked
-        from cutis.inverse.models import shipped_encoder
-        from cutis.textures import replacing
-
         with steps(1, quiet) as progress:
-            baked = bake(shipped_encoder(), lambda done, all_: progress.at(done, all_, "baking"))
-        with replacing(folder / f"{recipe}.npz") as partial:
-            save_baked(baked, partial)
+            written = _bake(recipe, folder, progress.at)
         if not quiet:
-            out.print(f"wrote {folder / f'{recipe}.npz'}")
+            out.print(f"wrote {' and '.join(str(path) for path in written)}")
         return
 
     try:
@@ -57,7 +52,7 @@ def train(
             f"training needs PyTorch ({error.name} is missing); pip install 'cutis[train]'"
         ) from None
     if recipe not in RECIPES:
-        raise CutisError(f"unknown recipe {recipe!r}; known are {EXACT}, {', '.join(RECIPES)}")
+        raise CutisError(f"unknown recipe {recipe!r}; known are {MEASURED}, {EXACT}, {', '.join(RECIPES)}")
     from dataclasses import replace
 
     options.make_folder(folder)
@@ -70,6 +65,38 @@ def train(
     if not quiet:
         out.print_json(data=metrics)
         out.print(f"wrote {folder / 'weights.safetensors'}")
+
+
+def _bake(recipe: str, folder: Path, at: Callable[[int, int, str], None]) -> list[Path]:
+    """Writes the tables of a baked model; returns their names."""
+    from cutis.albedo import albedo_space
+    from cutis.inverse.baked import (
+        ALIAGA_CHART,
+        MEASURED_CHART,
+        bake,
+        exact_inverse,
+        probable_skins,
+        save_baked,
+    )
+    from cutis.inverse.models import EXACT, shipped_encoder, shipped_prior, tissue_of
+    from cutis.inverse.trust import TRUST_CHART, trust_of
+    from cutis.textures import replacing
+
+    if recipe == EXACT:
+        jobs = {recipe: (exact_inverse(shipped_encoder()), ALIAGA_CHART)}
+    else:
+        space, prior = albedo_space(tissue_of(recipe)), shipped_prior()
+        jobs = {
+            recipe: (probable_skins(prior, space), MEASURED_CHART),
+            f"{recipe}-trust": (trust_of(prior, space), TRUST_CHART),
+        }
+    written = []
+    for name, (solve, chart) in jobs.items():
+        baked = bake(solve, chart, lambda done, total, name=name: at(done, total, f"baking {name}"))
+        written.append(folder / f"{name}.npz")
+        with replacing(written[-1]) as partial:
+            save_baked(baked, partial)
+    return written
 
 
 def _plot(folder: Path) -> None:

@@ -50,13 +50,13 @@ def _store_coordinates(u: Any, out: Any) -> None:
 
 @njit(parallel=True, fastmath=True, cache=True)
 def look_up(
-    colours: Any, table: Any, low: Any, scale: Any, ranges: Any, units: Any, out: Any
+    colours: Any, table: Any, low: Any, scale: Any, ranges: Any, form: Any, out: Any
 ) -> None:
-    """Fills out (n, 5) with the skins of colours (n, 3).
+    """Fills out (n, 5) with the skins of colours (n, 3), or (n, m) with what the table holds.
 
     `table` (a, b, c, 8) has coordinates in its first five lanes; `low`, `scale` (3,) turn a, b, c
-    into cells. Coordinates, in [0, 1], are written as they are, or as units by `ranges` (see
-    `units_kernel.py`).
+    into cells. By `form`, coordinates are written clamped to [0, 1] (0), as units by `ranges` (1,
+    see `units_kernel.py`), or m lanes as they are (2).
     """
     n = colours.shape[0]
     cells = (table.shape[0] - 3, table.shape[1] - 3, table.shape[2] - 3)
@@ -80,7 +80,9 @@ def look_up(
                 (at[11, i], at[12, i], at[13, i], at[14, i]),
             )
             spline_lanes_8(table, cell, weights, u, i)
-        if units:
+        if form == 1:
             store_units(u, ranges, out[start:end])
-        else:
+        elif form == 0:
             _store_coordinates(u, out[start:end])
+        else:
+            out[start:end] = u[: end - start, : out.shape[1]]

@@ -23,16 +23,18 @@ from cutis.errors import CutisError
 from cutis.inverse.device import check_device, torch_network
 from cutis.inverse.lookup import SHAPES, lookup_tensor
 from cutis.inverse.network import Autoencoder, Perceptron, load_weights
+from cutis.inverse.prior import SkinPrior, load_prior
 from cutis.optics import ALIAGA2022, MEASURED2026, Tissue
 
 EXACT, MEASURED = "aliaga2022-exact", "measured2026"
-DEFAULT = EXACT
+DEFAULT = MEASURED
 """What `default` stands for; headers and reports say the name, never `default`."""
 MODELS = tuple(dict.fromkeys((DEFAULT, EXACT, "aliaga2022", *SHAPES, "kubelka-munk")))
 """Names that `load_model` knows, besides `default`; it also takes the path of a weights file."""
 Conversion = Callable[[NDArray[np.float32]], NDArray[np.float32]]
 BAND = 1 << 18
 """Texels converted at a time."""
+WEIGHTS = resources.files("cutis.data").joinpath("weights")
 
 
 @dataclass(frozen=True)
@@ -130,17 +132,8 @@ def _load(name: str, device: str) -> Model:
                 f"the model {name} is a table, read by the processor; --device cuda is for "
                 "aliaga2022 and files of weights"
             )
-    weights = resources.files("cutis.data").joinpath("weights")
     if name in (EXACT, MEASURED):
-        from cutis.inverse.baked import load_baked
-
-        table = weights.joinpath(f"{name}.npz")
-        if not table.is_file():
-            raise CutisError(f"the model {name} did not come with this copy of cutis; use {EXACT}")
-        with resources.as_file(table) as file:
-            baked = load_baked(file)
-        tissue = tissue_of(name)
-        return Model(name, baked.skins, colour_table(tissue).rgb, tissue)
+        return _baked(name)
     if name in SHAPES:
         tensor = lookup_tensor(name)
         return Model(name, _in_units(tensor.encode), tensor.decode)
@@ -156,6 +149,31 @@ def _load(name: str, device: str) -> Model:
     )
 
 
+def _baked(name: str) -> Model:
+    from cutis.inverse.baked import Baked, load_baked
+    from cutis.inverse.trust import look_up_trust
+
+    def table(stem: str) -> Baked:
+        with resources.as_file(WEIGHTS.joinpath(f"{stem}.npz")) as file:
+            return load_baked(file)
+
+    tissue, inverse = tissue_of(name), table(name)
+    decode = colour_table(tissue).rgb
+    if name == EXACT:
+        return Model(name, inverse.skins, decode, tissue)
+    trust = table(f"{name}-trust")
+    before = tuple(float(s) for s in shipped_prior().prior_sigma)
+    return Model(
+        name, inverse.skins, decode, tissue, lambda rgb: look_up_trust(trust, rgb), before
+    )
+
+
+def shipped_prior() -> SkinPrior:
+    """The prior of measured skin that `measured2026` is baked from."""
+    with resources.as_file(WEIGHTS.joinpath(f"{MEASURED}-prior.npz")) as file:
+        return load_prior(file)
+
+
 def shipped_encoder() -> Perceptron:
     """The encoder of `aliaga2022`, on which `aliaga2022-exact` is baked."""
     return networks("aliaga2022").encoder
@@ -169,8 +187,7 @@ def networks(name: str) -> Autoencoder:
         raise CutisError(
             f"{name} is not a pair of networks; use aliaga2022 or a .safetensors file of weights"
         )
-    file = resources.files("cutis.data").joinpath("weights", f"{name}.safetensors")
-    with resources.as_file(file) as path:
+    with resources.as_file(WEIGHTS.joinpath(f"{name}.safetensors")) as path:
         return load_weights(path)
 
 

@@ -16,6 +16,8 @@ from cutis.optics.parameters import EPIDERMAL_BLOOD, PARAMETERS, Parameter, para
 WAVELENGTHS = np.arange(380.0, 781.0, 10.0)
 """nm, the 41 bands of every spectrum of this package."""
 WAVELENGTHS.flags.writeable = False
+LARGEST_SHIFT = 30.0
+"""nm that bands of a tissue may lie off their tables: from hexane to any lipid, with room."""
 
 
 @dataclass(frozen=True)
@@ -27,6 +29,9 @@ class Tissue:
     [saidi1992] and an exponential [jacques1998]. `dermis_scattering` is the dermis' scattering over
     the epidermis'. `hemoglobin_table` is one of `chromophores.HEMOGLOBIN_TABLES`. Blood in vessels
     of `vessel_radius` µm shades itself: it absorbs as μa (1 − e^−2μa r) / (2 μa r) [svaasand1995].
+    Bands of haemoglobin and of carotene lie `hemoglobin_shift` and `carotene_shift` nm to the red
+    of their tables (to the blue below 0). The first is an error of the wavelengths of the
+    instruments that a tissue was calibrated with [berns1988]; the second is what lipids do.
     """
 
     name: str
@@ -40,10 +45,12 @@ class Tissue:
     baseline_exponential: float = 0.0
     hemoglobin: float = 150.0
     hemoglobin_table: str = "prahl1999"
+    hemoglobin_shift: float = 0.0
     vessel_radius: float = 0.0
     bilirubin: float = 0.05
     beta_carotene_epidermis: float = 2.1e-4
     beta_carotene_dermis: float = 7e-5
+    carotene_shift: float = 0.0
     scattering_500: float = 36.4
     rayleigh_fraction: float = 0.48
     mie_power: float = 0.22
@@ -66,6 +73,9 @@ class Tissue:
         if self.hemoglobin_table not in chromophores.HEMOGLOBIN_TABLES:
             known = " or ".join(chromophores.HEMOGLOBIN_TABLES)
             raise CutisError(f"tissue {self.name}: hemoglobin_table must be {known}")
+        for name in ("hemoglobin_shift", "carotene_shift"):
+            if not abs(getattr(self, name)) <= LARGEST_SHIFT:
+                raise CutisError(f"tissue {self.name}: {name} must be within {LARGEST_SHIFT:g} nm")
         if not 0 <= self.vessel_radius < 1000:
             raise CutisError(f"tissue {self.name}: vessel_radius must lie in 0 to 1000 µm")
         if not 0 <= self.rayleigh_fraction <= 1:
@@ -141,19 +151,23 @@ class Tissue:
 
     def epidermis_background(self, wavelength: ArrayLike) -> NDArray[np.float64]:
         """μa of epidermis without melanin, cm⁻¹: β-carotene and baseline."""
-        carotene = chromophores.beta_carotene(wavelength, self.beta_carotene_epidermis)
-        return carotene + self.baseline(wavelength)
+        return self._carotene(wavelength, self.beta_carotene_epidermis) + self.baseline(wavelength)
 
     def whole_blood(self, wavelength: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """μa of fully deoxygenated and fully oxygenated blood, cm⁻¹, pigments in it included."""
         dissolved = chromophores.bilirubin(wavelength, self.bilirubin)
-        dissolved = dissolved + chromophores.beta_carotene(wavelength, self.beta_carotene_dermis)
+        dissolved = dissolved + self._carotene(wavelength, self.beta_carotene_dermis)
         substances = (chromophores.deoxyhemoglobin, chromophores.oxyhemoglobin)
+        tabulated = np.asarray(wavelength, dtype=np.float64) - self.hemoglobin_shift
         none, full = (
-            self._packed(substance(wavelength, self.hemoglobin, self.hemoglobin_table))
+            self._packed(substance(tabulated, self.hemoglobin, self.hemoglobin_table))
             for substance in substances
         )
         return none + dissolved, full + dissolved
+
+    def _carotene(self, wavelength: ArrayLike, concentration: float) -> NDArray[np.float64]:
+        tabulated = np.asarray(wavelength, dtype=np.float64) - self.carotene_shift
+        return chromophores.beta_carotene(tabulated, concentration)
 
     def _packed(self, absorption: NDArray[np.float64]) -> NDArray[np.float64]:
         """What blood of such an absorption, cm⁻¹, absorbs on average in its vessels."""
@@ -168,18 +182,21 @@ ALIAGA2022 = Tissue(name="aliaga2022")
 
 MEASURED2026 = Tissue(
     name="measured2026",
-    eumelanin_scale=6.6e11 * 550.0 ** (2.7 - 3.33),
-    eumelanin_power=-2.7,
+    eumelanin_scale=6.6e11 * 550.0 ** (2.57 - 3.33),
+    eumelanin_power=-2.57,
     pheomelanin_scale=2.9e15 * 550.0 ** (5.07 - 4.75),
     pheomelanin_power=-5.07,
     baseline_scale=0.0,
     baseline_offset=0.244,
     baseline_exponential=42.6,
-    hemoglobin_table="bosschaart2014",
+    hemoglobin_table="bosschaart2014-prahl1999",
+    hemoglobin_shift=-2.2,
     bilirubin=0.008,
+    beta_carotene_epidermis=1.6e-3,
+    carotene_shift=15.0,
     scattering_500=68.7,
     rayleigh_fraction=0.0,
-    mie_power=1.8,
+    mie_power=1.9,
     dimension=3,
     boundary="fresnel",
 )
