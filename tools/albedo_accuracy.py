@@ -17,7 +17,7 @@ from cutis.transport import two_layer_albedo
 
 BLOCKS, SIZE = 6, 6
 PAIRS = 600_000
-INVERSES = ("aliaga2022-exact", "aliaga2022-exact")
+INVERSES = ("aliaga2022-exact", "measured2026")
 """Models that find the skins of textures, in the order of SHIPPED."""
 RANDOM, TEXELS = 500_000, 40_000
 """Uniformly random skins, and texels of each texture, that the colour table is tried on."""

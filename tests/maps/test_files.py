@@ -94,7 +94,10 @@ def test_edited_maps_edited_again_are_as_if_edited_at_once(made, tmp_path):
     np.testing.assert_array_equal(twice.retouch(face).pixels, once.retouch(face).pixels)
     np.testing.assert_array_equal(twice.original.parameters(), skin.parameters())
     channels, _ = read_channels(tmp_path / "tanned.exr")
-    assert {name for name in channels if "." in name} == {"original.melanin", "original.eumelanin"}
+    assert {name for name in channels if name.startswith("original.")} == {
+        "original.melanin",
+        "original.eumelanin",
+    }
 
 
 def test_edited_half_maps_change_only_what_was_edited(made, tmp_path):

@@ -39,7 +39,7 @@ def test_skin_is_relit_by_its_spectrum(skin):
     expected = skin.source * after / np.maximum(before, 1e-4)
     found = edited.relit("A")
     np.testing.assert_allclose(found[inside], expected[inside], atol=1e-5)
-    np.testing.assert_allclose(found[inside] * gains, after[inside], rtol=0.05)
+    np.testing.assert_allclose(found[inside] * gains, after[inside], rtol=0.1)
     np.testing.assert_array_equal(found, edited.albedo(illuminant="A"))
 
 

@@ -126,8 +126,9 @@ def test_the_report_weighs_sigma_against_the_prior(skin, trusting):
         row, sigma = found["maps"][known.name], skin.sigma(known.name)[sure]
         width = known.high - known.low
         assert row["sigma"] == pytest.approx(np.median(sigma), abs=width / 30000)
-        step = known.from_coordinate(np.minimum(u[:, i] + 1e-5, 1)) - known.from_coordinate(u[:, i])
-        even = np.median(sigma / (step / 1e-5))
+        low, high = known.low ** (1 / known.root), known.high ** (1 / known.root)
+        slope = known.root * (high - low) * (low + u[:, i] * (high - low)) ** (known.root - 1)
+        even = np.median(sigma / slope)
         assert row["informed"] == pytest.approx(max(0, 1 - even / 0.2), abs=2e-3)
 
 

@@ -52,7 +52,9 @@ def train(
             f"training needs PyTorch ({error.name} is missing); pip install 'cutis[train]'"
         ) from None
     if recipe not in RECIPES:
-        raise CutisError(f"unknown recipe {recipe!r}; known are {MEASURED}, {EXACT}, {', '.join(RECIPES)}")
+        raise CutisError(
+            f"unknown recipe {recipe!r}; known are {MEASURED}, {EXACT}, {', '.join(RECIPES)}"
+        )
     from dataclasses import replace
 
     options.make_folder(folder)

@@ -10,7 +10,7 @@ from typing import Any
 
 WELL, ROUGHLY = 0.7, 0.35
 """Informed by at least this much a map is well known, or roughly; below it is hardly known."""
-DARK = 0.08
+DARK = 0.1
 """Median melanin from which blood that is hardly known is called hidden by melanin: little light
 comes back from below such an epidermis."""
 BELOW = ("blood", "oxygenation")

@@ -163,9 +163,7 @@ def _baked(name: str) -> Model:
         return Model(name, inverse.skins, decode, tissue)
     trust = table(f"{name}-trust")
     before = tuple(float(s) for s in shipped_prior().prior_sigma)
-    return Model(
-        name, inverse.skins, decode, tissue, lambda rgb: look_up_trust(trust, rgb), before
-    )
+    return Model(name, inverse.skins, decode, tissue, lambda rgb: look_up_trust(trust, rgb), before)
 
 
 def shipped_prior() -> SkinPrior:
