@@ -8,17 +8,17 @@ from pages import rewrite
 from rich.progress import track
 
 from cutis.albedo import albedo_space, uniform
-from cutis.albedo.colour_table import SHIPPED, colour_table
+from cutis.albedo.colour_table import colour_table
 from cutis.colour import delta_e
 from cutis.figures.subjects import data_folder, every_face
 from cutis.inverse import load_model
-from cutis.optics import ALIAGA2022, WAVELENGTHS, from_coordinates
+from cutis.optics import ALIAGA2022, TISSUES, WAVELENGTHS, from_coordinates
 from cutis.transport import two_layer_albedo
 
 BLOCKS, SIZE = 6, 6
 PAIRS = 600_000
-INVERSES = ("aliaga2022-exact", "aliaga2022-exact")
-"""Models that find the skins of textures, in the order of SHIPPED."""
+INVERSES = {"aliaga2022": "aliaga2022-exact", "measured2026": "measured2026"}
+"""Models that find the skins of textures, by tissue."""
 RANDOM, TEXELS = 500_000, 40_000
 """Uniformly random skins, and texels of each texture, that the colour table is tried on."""
 
@@ -97,8 +97,11 @@ def decoder() -> str:
     faces = list(every_face(data_folder(None), TEXELS))
     sets = [
         (tissue, *named)
-        for tissue, inverse in zip(SHIPPED, INVERSES, strict=True)
-        for named in (random, *((name, load_model(inverse).encode(rgb)) for name, rgb in faces))
+        for tissue in TISSUES.values()
+        for named in (
+            random,
+            *((name, load_model(INVERSES[tissue.name]).encode(rgb)) for name, rgb in faces),
+        )
     ]
     for tissue, name, skins in sets:
         exact, table = albedo_space(tissue).rgb(skins), colour_table(tissue).rgb(skins)

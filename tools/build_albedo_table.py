@@ -12,15 +12,15 @@ from typing import IO
 from rich.progress import Progress
 
 from cutis.albedo import AlbedoSpace
-from cutis.albedo.colour_table import SHIPPED, build_colours, save_colours
+from cutis.albedo.colour_table import build_colours, save_colours
 from cutis.albedo.spectral_table import SpectralTable, build, save, table_file
-from cutis.optics import Tissue, with_rare_chromophores
+from cutis.optics import TISSUES, Tissue, with_rare_chromophores
 
 FOLDER = Path(__file__).parents[1] / "src" / "cutis" / "data" / "albedo"
 
 
 def main() -> None:
-    for tissue in SHIPPED:
+    for tissue in TISSUES.values():
         rare = with_rare_chromophores(tissue)
         write(table_file(rare), partial(save, solved(rare)))
         table = solved(tissue)

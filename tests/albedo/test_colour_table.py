@@ -11,7 +11,6 @@ from cutis.albedo.colour_table import (
     AXES,
     CELLS,
     ENDS,
-    SHIPPED,
     TERMS,
     build_colours,
     colour_table,
@@ -21,7 +20,7 @@ from cutis.albedo.colour_table import (
     to_axis,
 )
 from cutis.colour import delta_e
-from cutis.optics import ALIAGA2022, PARAMETERS
+from cutis.optics import ALIAGA2022, PARAMETERS, TISSUES
 
 SKINS = uniform(3000, seed=21).astype(np.float32)
 
@@ -35,7 +34,7 @@ def test_kernel_is_the_plain_sum():
     np.testing.assert_allclose(table.rgb(skins), table.reference(skins), atol=2e-6)
 
 
-@pytest.mark.parametrize("tissue", SHIPPED, ids=lambda t: t.name)
+@pytest.mark.parametrize("tissue", TISSUES.values(), ids=TISSUES)
 def test_colours_of_random_skins_are_those_of_the_exact_space(tissue):
     skins = uniform(60_000, seed=22)
     exact, table = albedo_space(tissue).rgb(skins), colour_table(tissue).rgb(skins)
@@ -53,7 +52,7 @@ def test_another_tissue_of_a_known_name_is_not_read_from_the_file():
     assert np.abs(found - colour_table().rgb(skins)).max() > 0.01
 
 
-@pytest.mark.parametrize("tissue", SHIPPED, ids=lambda t: t.name)
+@pytest.mark.parametrize("tissue", TISSUES.values(), ids=TISSUES)
 def test_ends_of_the_ranges_too(tissue):
     corners = np.array(np.meshgrid(*[(p.low, p.high) for p in PARAMETERS], indexing="ij"))
     corners = corners.reshape(5, -1).T
@@ -69,14 +68,14 @@ def test_faces_decode_as_by_the_exact_space(shared_data):
     count = 0
     for name, colours in every_face(shared_data, 4000):
         skins = load_model("aliaga2022-exact").encode(colours)
-        for tissue in SHIPPED:
+        for tissue in TISSUES.values():
             errors = delta_e(albedo_space(tissue).rgb(skins), colour_table(tissue).rgb(skins))
             assert np.percentile(errors, 99) <= 0.01, (name, tissue.name)
         count += 1
     assert count > 10
 
 
-@pytest.mark.parametrize("tissue", SHIPPED, ids=lambda t: t.name)
+@pytest.mark.parametrize("tissue", TISSUES.values(), ids=TISSUES)
 def test_what_ships_is_what_is_built(tissue):
     built, shipped = build_colours(albedo_space(tissue)), colour_table(tissue)
     np.testing.assert_allclose(built.rgb(SKINS), shipped.rgb(SKINS), atol=2e-6)

@@ -13,6 +13,36 @@ def digest(path):
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
+def test_relit_is_what_the_library_gives(maps, cutis, tmp_path):
+    out = tmp_path / "bulb.png"
+    ended = cutis("edit", maps, "--melanin", "x1.5", "--illuminant", "A", "-o", out)
+    assert (ended.code, ended.err) == (0, "")
+    assert "melanin x1.5\nshown under A\n768 texels changed" in ended.out
+    face = package.read(maps.parents[1] / "face.png")
+    expected = package.estimate(face).multiply(melanin=1.5).retouch(face, "A")
+    np.testing.assert_array_equal(package.read(out).pixels, expected.pixels)
+
+
+def test_an_unknown_light_is_refused_before_the_work(maps, cutis, one_line, tmp_path):
+    ended = cutis("edit", maps, "--illuminant", "candle", "-o", tmp_path / "out.png")
+    assert "unknown illuminant 'candle'" in one_line(ended)
+    assert not (tmp_path / "out.png").exists()
+
+
+def test_edited_maps_keep_their_sigma(trusting, write_face, cutis, tmp_path):
+    face, skin, again = (tmp_path / n for n in ("face.png", "face.skin.exr", "again.skin.exr"))
+    write_face(tmp_path)
+    package.estimate(package.read(face)).save(skin)
+    ended = cutis("edit", skin, "--source", face, "--melanin", "x1.5", "--blood", "0.02",
+                  "--save-maps", again, "-o", tmp_path / "out.png")  # fmt: skip
+    assert (ended.code, ended.err) == (0, "")
+    before, after = load_maps(skin), load_maps(again)
+    np.testing.assert_allclose(after.sigma("melanin"), 1.5 * before.sigma("melanin"), rtol=1e-3)
+    assert after.sigma("blood").max() == 0
+    np.testing.assert_array_equal(after.sigma("thickness"), before.sigma("thickness"))
+    np.testing.assert_array_equal(after.confidence, before.confidence)
+
+
 @pytest.mark.parametrize("kind", ["png8", "png16", "tiff16", "exr"])
 @pytest.mark.parametrize("alpha", [False, True], ids=["RGB", "RGBA"])
 @pytest.mark.parametrize("flags", [(), ("--melanin", "x1")], ids=["no flags", "times one"])

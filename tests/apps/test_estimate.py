@@ -7,12 +7,16 @@ import pytest
 from PIL import Image
 
 import cutis as package
+from cutis.inverse import load_model
+from cutis.inverse.models import DEFAULT
 from cutis.maps import estimate, load_maps, report
 from cutis.optics import NAMES
 from cutis.textures import read_channels
 
 MAPS = [f"face.{name}.png" for name in NAMES]
-PROMISED = sorted(["face.skin.exr", "face.model.exr", "face.report.json", "face.error.png", *MAPS])
+TRUST = ["face.sigma.png", "face.confidence.png"]
+PLAIN = ["face.skin.exr", "face.model.exr", "face.report.json", "face.error.png", *MAPS]
+PROMISED = sorted([*PLAIN, *(TRUST if load_model().to_trust else [])])
 
 
 def names(folder):
@@ -49,7 +53,7 @@ def test_it_says_what_it_found(write_face, cutis, tmp_path):
     face = write_face(tmp_path)
     ended = cutis("estimate", face, "-o", tmp_path / "new" / "out", "--white", "1,1,1.02")
     assert (ended.code, ended.err) == (0, "")
-    assert "gains 1.000, 1.000, 1.020 (given), model default" in ended.out
+    assert f"gains 1.000, 1.000, 1.020 (given), model {DEFAULT}" in ended.out
     for name in NAMES:
         assert name in ended.out
     assert "ΔE00 mean" in ended.out
@@ -124,3 +128,30 @@ def test_a_mask_between_the_texels_of_previews(cutis, tmp_path):
         "estimate", tmp_path / "face.png", "--mask", tmp_path / "mask.png", "-o", tmp_path, "-q"
     )
     assert (ended.code, ended.out, ended.err) == (0, "", "")
+
+
+def test_sigma_goes_into_maps_pictures_report_and_words(trusting, write_face, cutis, tmp_path):
+    face, out = write_face(tmp_path), tmp_path / "out"
+    ended = cutis("estimate", face, "-o", out, "--report")
+    assert (ended.code, ended.err) == (0, "")
+    assert "melanin: well known, ±" in ended.out
+    assert "oxygenation: hardly known, ±0." in ended.out
+    assert "RGB fixes melanin and blood well" not in ended.out
+    assert names(out) == sorted([*PLAIN, *TRUST, "face.report.html"])
+    stored, skin = load_maps(out / "face.skin.exr"), estimate(package.read(face))
+    for name in NAMES:
+        np.testing.assert_allclose(stored.sigma(name), skin.sigma(name), rtol=1e-3)
+    found = json.loads((out / "face.report.json").read_text("utf-8"))
+    assert found["maps"] == json.loads(json.dumps(report(skin)))["maps"]
+    assert "well known" in (out / "face.report.html").read_text("utf-8")
+    ended = cutis("info", out / "face.skin.exr")
+    assert "melanin: well known, ±" in ended.out
+
+
+def test_sigma_can_be_left_out(trusting, write_face, cutis, tmp_path):
+    ended = cutis("estimate", write_face(tmp_path), "-o", tmp_path / "out", "--no-sigma")
+    assert (ended.code, ended.err) == (0, "")
+    assert names(tmp_path / "out") == sorted(PLAIN)
+    channels, _ = read_channels(tmp_path / "out" / "face.skin.exr")
+    assert set(channels) == {*NAMES, "mask"}
+    assert "known" not in cutis("info", tmp_path / "out" / "face.skin.exr").out

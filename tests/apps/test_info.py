@@ -1,5 +1,6 @@
 """`cutis info` says what is in a file of maps."""
 
+from cutis.inverse.models import DEFAULT
 from cutis.maps import load_maps
 from cutis.optics import NAMES
 
@@ -8,7 +9,7 @@ def test_info(cutis, maps):
     ended = cutis("info", maps)
     assert (ended.code, ended.err) == (0, "")
     assert "face.skin.exr: 32 × 24 texels, 100.0 % skin" in ended.out
-    assert "model default; gains 1.0000, 1.0000, 1.0000 (none)" in ended.out
+    assert f"model {DEFAULT}; gains 1.0000, 1.0000, 1.0000 (none)" in ended.out
     assert "source: ../face.png" in ended.out
     for name in NAMES:
         assert name in ended.out

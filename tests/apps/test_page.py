@@ -128,6 +128,17 @@ def test_it_asks_for_nothing_from_outside(write, report, pictures):
     assert policy.startswith("default-src 'none'; img-src data:;")
 
 
+def test_sigma_is_on_it_where_the_model_knows_it(write, report, pictures):
+    for i, name in enumerate(NAMES):
+        report["maps"][name] |= {"sigma": 0.00123 * (i + 1), "informed": 0.871 - 0.2 * i}
+    _, page = write(report, pictures, "face.png")
+    for i in range(5):
+        assert f"{0.00123 * (i + 1):.3g}" in page.words
+        assert f"{87.1 - 20 * i:.1f}\u00a0%" in page.words
+    assert "well known" in page.words
+    assert "RGB fixes it" not in page.words
+
+
 def test_every_number_of_the_report_is_on_it(write, report, pictures):
     _, page = write(report, pictures, "face.png")
     maps = {k: {q: v[q] for q in ("p5", "median", "p95")} for k, v in report["maps"].items()}

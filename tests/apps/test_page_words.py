@@ -66,6 +66,31 @@ def test_every_map_has_a_word_on_how_far_rgb_fixes_it():
     assert {level for level, _ in words.FIXED.values()} == set(words.LEVELS)
 
 
+KNOWN = {
+    "melanin": {"unit": "1", "median": 0.02, "sigma": 0.0016, "informed": 0.9},
+    "blood": {"unit": "1", "median": 0.03, "sigma": 0.01, "informed": 0.5},
+    "thickness": {"unit": "µm", "median": 80, "sigma": 21.7, "informed": 0.1},
+    "eumelanin": {"unit": "1", "median": 0.7, "sigma": 0.2, "informed": 0.0},
+    "oxygenation": {"unit": "1", "median": 0.7},
+}
+
+
+def test_sigma_of_this_face_takes_the_place_of_general_words():
+    report = changed(maps=KNOWN)
+    assert words.fixed(report, "melanin") == ("good", "well known")
+    assert words.fixed(report, "oxygenation") == words.FIXED["oxygenation"]
+    said = warnings(report)
+    assert [text.split(". ")[0] for text in said] == [
+        "good: Melanin: well known, ±8 % (median σ)",
+        "care: Blood: roughly known, ±33 % (median σ)",
+        "doubt: Thickness: hardly known, ±22 µm (median σ)",
+        "doubt: Eumelanin: hardly known, ±0.2 (median σ)",
+    ]
+    assert "controls for edits, not findings" not in " ".join(said)
+    assert "20.0\u00a0% of the mask" in warnings(changed(maps=KNOWN, low_confidence=0.2))[0]
+    assert warnings(changed(maps=KNOWN, low_confidence=0.02)) == said
+
+
 def test_the_verdict_follows_the_share_out_of_gamut():
     said = [words.verdict(changed(colour={"out_of_gamut": out})) for out in (0.05, 0.1, 0.4)]
     assert said[0].startswith("The model explains this capture")

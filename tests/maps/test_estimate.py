@@ -118,7 +118,7 @@ def capture(capture1):
     face = cutis.read(path)
     mask = cutis.read_mask(mask_path, face.shape)[::8, ::8]
     rgb = np.ascontiguousarray(face.linear()[::8, ::8])
-    return rgb, mask, estimate(rgb, mask, white="auto")
+    return rgb, mask, estimate(rgb, mask, white="auto", model="aliaga2022-exact")
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,7 @@ import pytest
 
 import cutis
 from cutis.errors import CutisError
+from cutis.inverse import load_model
 from cutis.inverse.models import DEFAULT
 from cutis.maps import estimate, find_source, load_maps, presets, save_maps, source_note
 from cutis.optics import ALIAGA2022, NAMES, PARAMETERS
@@ -58,7 +59,8 @@ def test_half_round_trip_is_within_half_precision(made, tmp_path):
 def test_header_says_what_is_in_the_file(made):
     capture, path, _ = made
     channels, header = read_channels(path)
-    assert set(channels) == {*NAMES, "mask"}
+    trust = [*(f"{name}.sigma" for name in NAMES), "confidence"]
+    assert set(channels) == {*NAMES, "mask", *(trust if load_model().to_trust else [])}
     for known in PARAMETERS:
         assert f"[{known.unit}]" in header[f"cutis:{known.name}"]
         assert f"{known.low:g} to {known.high:g}" in header[f"cutis:{known.name}"]
@@ -92,7 +94,10 @@ def test_edited_maps_edited_again_are_as_if_edited_at_once(made, tmp_path):
     np.testing.assert_array_equal(twice.retouch(face).pixels, once.retouch(face).pixels)
     np.testing.assert_array_equal(twice.original.parameters(), skin.parameters())
     channels, _ = read_channels(tmp_path / "tanned.exr")
-    assert {name for name in channels if "." in name} == {"original.melanin", "original.eumelanin"}
+    assert {name for name in channels if name.startswith("original.")} == {
+        "original.melanin",
+        "original.eumelanin",
+    }
 
 
 def test_edited_half_maps_change_only_what_was_edited(made, tmp_path):

@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from cutis.albedo.space import AlbedoSpace, albedo_space
 from cutis.albedo.spectral_table import chebyshev, chebyshev_to_spline, spline_basis
-from cutis.optics import ALIAGA2022, MEASURED2026, Tissue
+from cutis.optics import ALIAGA2022, TISSUES, Tissue
 from cutis.optics.parameters import BLOOD, EUMELANIN, MELANIN, OXYGENATION, PARAMETERS, THICKNESS
 
 TERMS = 16
@@ -35,8 +35,6 @@ HALF = 60.0
 """Thickness, µm, where t / (t + HALF) is a half."""
 DARK = 0.01
 """Albedo added to the weight, so that the darkest skins do not rule the factors."""
-SHIPPED = (ALIAGA2022, MEASURED2026)
-"""Tissues whose tables are stored with the package."""
 
 
 def to_axis(axis: int, value: ArrayLike) -> NDArray[np.floating]:
@@ -137,7 +135,7 @@ def colour_table(tissue: Tissue = ALIAGA2022) -> ColourTable:
 @lru_cache(maxsize=4)
 def _colour_table(tissue: Tissue) -> ColourTable:
     shipped = resources.files("cutis.data").joinpath("albedo", f"{tissue.name}-rgb.npz")
-    if tissue in SHIPPED and shipped.is_file():
+    if tissue in TISSUES.values() and shipped.is_file():
         with shipped.open("rb") as file:
             return load_colours(file)
     return build_colours(albedo_space(tissue))

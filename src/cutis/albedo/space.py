@@ -78,14 +78,20 @@ class AlbedoSpace:
             reflectance_kernel(_float32(flat[band]), self.slots, *self._separated, spectra[band])
         return out
 
-    def rgb(self, parameters: ArrayLike) -> NDArray[np.float32]:
-        """(..., 5) parameters → (..., 3) linear sRGB under D65."""
+    def rgb(self, parameters: ArrayLike, light: str = "D65") -> NDArray[np.float32]:
+        """(..., 5) parameters → (..., 3) linear sRGB, white-balanced under `light`.
+
+        Lights are those of `colour.illuminant`; CutisError for others.
+        """
         from cutis.albedo.spectrum_kernel import rgb_kernel
 
         flat, shape = self.rows(parameters)
         out = np.empty((len(flat), 3), dtype=np.float32)
+        weights = self._to_rgb
+        if light != "D65":
+            weights = spectrum_to_rgb(WAVELENGTHS, light).astype(np.float32)
         for band in _bands(len(flat)):
-            rgb_kernel(_float32(flat[band]), self.slots, *self._separated, self._to_rgb, out[band])
+            rgb_kernel(_float32(flat[band]), self.slots, *self._separated, weights, out[band])
         return out.reshape(*shape, 3)
 
     def rgb_gradient(

@@ -15,7 +15,7 @@ from cutis.apps.estimate_file import Progress, Task, calibrated, estimate_file
 from cutis.errors import CutisError
 from cutis.inverse import Calibration
 
-PIPELINE = 1
+PIPELINE = 2
 """Rises when results of the same input and settings change, so that they are made again."""
 
 

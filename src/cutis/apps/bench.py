@@ -53,8 +53,10 @@ def bench(
 def contestants(count: int, device: str = "cpu") -> tuple[list["Timed"], list[str], int]:
     """What is timed on `count` texels, a line for each that is not installed, the threads."""
     import numba
+    import numpy as np
 
     from cutis.albedo import albedo_space, uniform
+    from cutis.albedo.space import BAND
     from cutis.apps.rivals import onnx_step, random_networks, tiled, torch_step
     from cutis.apps.timing import Timed
     from cutis.inverse import load_model
@@ -62,7 +64,7 @@ def contestants(count: int, device: str = "cpu") -> tuple[list["Timed"], list[st
 
     check_device(device)
     threads = numba.get_num_threads()
-    space, networks = albedo_space(), random_networks()
+    space, networks = albedo_space(load_model().tissue), random_networks()
     skins = uniform(count, seed=0).astype("float32")
     rgb = space.rgb(skins)
     moved = rgb.nbytes + skins.nbytes
@@ -95,6 +97,14 @@ def contestants(count: int, device: str = "cpu") -> tuple[list["Timed"], list[st
     entries.append(
         Timed("exact space", "41 bands", lambda: space.reflectance(skins), skins.nbytes + spectra)
     )
+    part = np.empty((min(count, BAND), 41), np.float32)
+
+    def streamed() -> None:
+        for start in range(0, count, BAND):
+            some = skins[start : start + BAND]
+            space.reflectance(some, part[: len(some)])
+
+    entries.append(Timed("exact space", "streamed", streamed, skins.nbytes + spectra))
     entries.append(Timed("exact space", "decode", lambda: space.rgb(skins), moved))
     return entries, missing, threads
 

@@ -25,6 +25,14 @@ def edit(
     source: Annotated[
         Path | None, typer.Option(help="The capture, if it is not where the maps say.")
     ] = None,
+    illuminant: Annotated[
+        str | None,
+        typer.Option(
+            "--illuminant",
+            help="Show the face under this light, balanced on it: a CIE name (A, FL11, LED-B3), "
+            "D65-prime, or a CSV of its spectrum.",
+        ),
+    ] = None,
     method: options.Method = None,
     output_colorspace: options.OutputColorspace = None,
     ocio: options.Ocio = None,
@@ -39,9 +47,12 @@ def edit(
     a UDIM set, give MAPS, the output and --mask as NAME.<UDIM>.EXT.
 
     Example: cutis edit out/face.skin.exr --melanin x1.4 --blood x0.5 -o tanned.png
+
+    Example: cutis edit out/face.skin.exr --illuminant A -o bulb.png
     """
     from cutis.apps.console import out, steps
     from cutis.apps.edit_file import Job, edit_file
+    from cutis.colour import light_conversion
     from cutis.errors import CutisError
     from cutis.textures import colour_space, format_of
     from cutis.textures.udim import TOKEN, tile_of, udim_tiles
@@ -60,7 +71,11 @@ def edit(
     edits = options.edits(preset, flags)
     format_of(output)  # fails now rather than after the work
     space = None if output_colorspace is None else colour_space(output_colorspace, ocio)
-    job = Job(maps, output, tuple(edits), amount, mask, source, by_tensor, space, save_maps)
+    if illuminant is not None:
+        light_conversion("D65", illuminant)  # fails now too
+    job = Job(
+        maps, output, tuple(edits), amount, mask, source, by_tensor, space, save_maps, illuminant
+    )
     jobs = [job]
     if TOKEN in maps.name:
         named_all = [path for path in (output, save_maps, source) if path is not None]
@@ -83,4 +98,6 @@ def edit(
             share = f" ({100 * clamped / max(result.inside, 1):.0f} % of the mask)"
             note = f", {clamped:,} texels clamped to range{share}" if clamped else ""
             out.print(f"{text}{note}")
+        if illuminant is not None:
+            out.print(f"shown under {illuminant}")
         out.print(f"{result.changed:,} texels changed; wrote {one.output}")

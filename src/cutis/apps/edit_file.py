@@ -27,6 +27,7 @@ class Job:
     model: str | None = None
     space: "Space | None" = None
     save_maps: Path | None = None
+    illuminant: str | None = None
 
     def tile(self, number: int, tile_of: Callable[[Path, int], Path]) -> "Job":
         """The same for one tile of a UDIM set."""
@@ -73,11 +74,11 @@ def edit_file(job: Job, progress: "Progress") -> Edited:
         inside, changed, marked, clamped = 0, 0, False, None
         writer = stack.enter_context(texture_writer(job.output, texture, job.space))
         for rows in texture.bands():
-            skin = replace(maps.rows(rows), model=model)
+            skin = replace(maps.rows(rows, trust=False), model=model)
             where = None if mask is None else mask.rows(rows)
             edited = skin.apply(job.edits, where, amount=job.amount)
             part = texture.rows(rows)
-            result = edited.retouch(part)
+            result = edited.retouch(part, job.illuminant)
             writer.write(result)
             inside += int(np.count_nonzero(skin.mask))
             marked = marked or where is None or bool((where > MaskFile.BLACK).any())
@@ -95,10 +96,8 @@ def edit_file(job: Job, progress: "Progress") -> Edited:
         if job.save_maps is not None:
             touched = {edit.parameter for edit in job.edits} | set(maps.changed)
             rare = [name for name in RARE_NAMES if name in touched | set(maps.rare)]
-            like = replace(
-                blank(maps.calibration, model, source_note(texture)), edits=names,
-                clamped=(*maps.clamped, *told),
-            )  # fmt: skip
+            like = blank(maps.calibration, model, source_note(texture), maps.sigmas, maps.confident)
+            like = replace(like, edits=names, clamped=(*maps.clamped, *told))
             put = stack.enter_context(
                 maps_writer(job.save_maps, like, shape, "float", sorted(touched), rare)
             )

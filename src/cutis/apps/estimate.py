@@ -37,6 +37,9 @@ def estimate(
         str, typer.Option(help="Where networks run: cpu, or cuda with PyTorch for it.")
     ] = "cpu",
     half: Annotated[bool, typer.Option(help="Store the maps as half instead of float.")] = False,
+    no_sigma: Annotated[
+        bool, typer.Option("--no-sigma", help="Leave standard deviations and confidence out.")
+    ] = False,
     report: Annotated[bool, typer.Option("--report", help="Also write NAME.report.html.")] = False,
     regions: Annotated[
         Path | None,
@@ -85,7 +88,7 @@ def estimate(
     ocio = ocio or configured() or ""  # said to workers, who may have another $OCIO
     settings = Settings(
         white, exposure, illuminant, model, colorspace, ocio, output_colorspace, half, report,
-        device,
+        device, not no_sigma,
     )  # fmt: skip
     # what is wrong with the flags is said now rather than after reading
     light_conversion(illuminant)
@@ -156,6 +159,7 @@ def say_all(found: Sequence["Outcome"], output: Path) -> None:
 def say(results: dict[str, Any], white: str = "none") -> None:
     """Prints what was found in one capture."""
     from cutis.apps.console import out, print_statistics
+    from cutis.apps.trust_words import lines
 
     gains = ", ".join(f"{g:.3f}" for g in results["calibration"]["gains"])
     light = results["calibration"]["illuminant"]
@@ -182,10 +186,14 @@ def say(results: dict[str, Any], white: str = "none") -> None:
         f"{colour['delta_e_mean']:.3f}, 95 % {colour['delta_e_p95']:.3f}, "
         f"out of gamut {100 * colour['out_of_gamut']:.1f} %, ITA {colour['ita_median']:.0f}°"
     )
-    out.print(
-        "On skin colours RGB fixes melanin and blood well, thickness less, and says little of "
-        "eumelanin and oxygenation."
-    )
+    told = list(lines(results["maps"], results.get("low_confidence")))
+    for line in told:
+        out.print(line)
+    if not told:
+        out.print(
+            "On skin colours RGB fixes melanin and blood well, thickness less, and says little of "
+            "eumelanin and oxygenation."
+        )
     if share < 0.2:
         out.print("That is a small part of the mask: darker texels are not in these numbers.")
     if colour["out_of_gamut"] > 0.05 and white != "auto":

@@ -38,6 +38,7 @@ class Settings:
     half: bool = False
     page: bool = False
     device: str = "cpu"
+    sigma: bool = True
 
 
 @dataclass(frozen=True)
@@ -126,7 +127,8 @@ def estimate_and_show(
     import cutis.maps as maps
     from cutis.apps.previews import Previews
     from cutis.colour import LINEAR
-    from cutis.inverse import on_device
+    from cutis.inverse import load_model, on_device
+    from cutis.optics import NAMES
     from cutis.textures import channel_writer, colour_space, replacing, sweep
 
     how, stem = task.settings, task.stem
@@ -140,7 +142,10 @@ def estimate_and_show(
         stack.enter_context(options.made_folder(task.output))
         sweep(task.output)
         shape, total = texture.shape, texture.shape[0] * texture.shape[1]
-        like = maps.blank(calibration, how.model, maps.source_note(texture))
+        trusted = how.sigma and load_model(how.model).to_trust is not None
+        like = maps.blank(
+            calibration, how.model, maps.source_note(texture), NAMES if trusted else (), trusted
+        )
         running, previews = maps.Report(like, shape), Previews(calibration, shape)
         regions = None if task.regions is None else maps.Regions(task.regions, shape)
         header: dict[str, Any] = {"colorspace": "lin_rec709" if space == LINEAR else space.name}
@@ -154,7 +159,9 @@ def estimate_and_show(
             part = texture.rows(rows)
             cover, source = cover_of(part, mask, rows), part.linear()
             seen = seen or bool((cover > (0 if mask is None else mask.BLACK)).any())
-            found: dict[str, Any] = maps.estimate_rows(source, cover, calibration, how.model)
+            found: dict[str, Any] = maps.estimate_rows(
+                source, cover, calibration, how.model, trusted
+            )
             skin = replace(
                 like, **found, mask=cover, source=source, first_row=rows.start, whole=shape
             )

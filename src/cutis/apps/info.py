@@ -7,23 +7,29 @@ import typer
 
 
 def info(maps: Annotated[Path, typer.Argument(help="Maps, NAME.skin.exr.")]) -> None:
-    """Say what is in a file of skin maps: model, calibration, edits, ranges.
+    """Say what is in a file of skin maps: model, calibration, edits, ranges, what is known.
+
+    Where the file holds standard deviations, it says which maps the colour of this face informs.
 
     Example: cutis info out/face.skin.exr
     """
     import numpy as np
 
     from cutis.apps.console import out, print_statistics
+    from cutis.apps.trust_words import lines
     from cutis.maps import MapsFile
     from cutis.maps.statistics import MapStatistics
+    from cutis.maps.trust import TrustStatistics
     from cutis.optics import parameter
 
     with MapsFile(maps) as file:
-        found, inside = MapStatistics(), 0
+        found, trust, inside = MapStatistics(), TrustStatistics(), 0
         ends = {name: (np.inf, -np.inf) for name in file.rare}
         for rows in file.bands():
             skin = file.rows(rows)
-            found.add(skin.coordinates(), skin.mask > 0)
+            u = skin.coordinates()
+            found.add(u, skin.mask > 0)
+            trust.add(skin.sigmas, skin.confidence, u, skin.mask > 0)
             inside += int((skin.mask > 0).sum())
             for name, (low, high) in ends.items():
                 values = skin.map(name)[skin.mask > 0]
@@ -41,10 +47,17 @@ def info(maps: Annotated[Path, typer.Argument(help="Maps, NAME.skin.exr.")]) -> 
         out.print(f"{key.replace('_', ' ')}: {value}")
     for change in file.edits:
         out.print(f"edit: {change}")
+    percentiles, known = found.percentiles(), trust.finish(file.model)
     print_statistics(
         (name, parameter(name).unit, low, median, high)
-        for name, (low, median, high) in found.percentiles().items()
+        for name, (low, median, high) in percentiles.items()
     )
     for name, (low, high) in ends.items():
         unit = parameter(name).unit.replace("1", "").strip()
         out.print(f"{name}: {low:.4g} to {high:.4g} {unit}".rstrip())
+    told = {
+        name: {"unit": parameter(name).unit, "median": percentiles[name][1], **row}
+        for name, row in known.items()
+    }
+    for line in lines(told, trust.low_confidence()):
+        out.print(line)

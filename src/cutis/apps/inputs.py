@@ -13,7 +13,8 @@ from cutis.textures.udim import TOKEN, missing_tiles, tile_of, udim_pattern, udi
 
 Set = tuple[Path, ...]
 """Captures that share one calibration."""
-RESULTS = (".skin.exr", ".model.exr", ".error.png", *(f".{name}.png" for name in NAMES))
+PICTURES = (*NAMES, "error", "sigma", "confidence")
+RESULTS = (".skin.exr", ".model.exr", *(f".{name}.png" for name in PICTURES))
 """Ends of names that are results, not captures, where NAME.report.json lies beside."""
 
 

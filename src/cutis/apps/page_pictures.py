@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from cutis.apps import page_figures as figures
 from cutis.apps import page_words as words
+from cutis.apps import trust_words
 from cutis.apps.page_words import number
 from cutis.figures.layout import COLOUR_MAPS, displayed
 from cutis.optics import PARAMETERS
@@ -71,7 +72,7 @@ def maps(report: dict[str, Any], pictures: Pictures) -> Iterator[str]:
         row = report.get("maps", {}).get(known.name)
         if row is None or known.name not in pictures:
             continue
-        level, fixed = words.FIXED[known.name]
+        level, fixed = words.fixed(report, known.name)
         values = pictures[known.name]
         histogram = figures.Histogram.of(values)
         if row.get("histogram"):
@@ -85,6 +86,8 @@ def maps(report: dict[str, Any], pictures: Pictures) -> Iterator[str]:
             f"{known.meaning}: median {number(band[1])}{unit}, "
             f"90 % within {number(band[0])} to {number(band[2])}{unit}"
         )
+        if "sigma" in row:
+            text += f"; {trust_words.spread(report['maps'], known.name)} each (median σ)"
         yield f'<article class="card map"><header><h3>{known.name}</h3>'
         yield f'<span class="tag {level}">{fixed}</span></header>'
         yield _map_figure(

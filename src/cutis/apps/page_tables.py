@@ -13,16 +13,24 @@ def numbers(report: dict[str, Any]) -> Iterator[str]:
     """The maps inside the mask, and the colour errors."""
     clamped, rough = report.get("clamped") or {}, report.get("smoothness") or {}
     head = ["map", "unit", "5 %", "median", "95 %"]
+    spread = any("sigma" in row for row in report.get("maps", {}).values())
+    head += ["σ, median", "informed"] if spread else []
     head += ["at an end of its range"] if clamped else []
     head += ["roughness"] if rough else []
     rows = []
     for name, row in report.get("maps", {}).items():
         cells = [name, row["unit"], *(number(row[key]) for key in ("p5", "median", "p95"))]
+        cells += [number(row.get("sigma")), percent(row.get("informed"))] if spread else []
         cells += [percent(clamped.get(name))] if clamped else []
         cells += [number(rough.get(name))] if rough else []
         rows.append(cells)
     yield "<section><h2>Numbers</h2>"
     yield table("Maps inside the mask", head, rows)
+    if spread:
+        yield (
+            '<p class="quiet">Informed: by how much the colours of this capture narrow the spread '
+            "that such skins have in general, on the even scale of each map.</p>"
+        )
     if rough:
         yield (
             '<p class="quiet">Roughness: mean difference of neighbouring texels, on the even '

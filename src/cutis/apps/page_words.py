@@ -4,6 +4,8 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
+from cutis.apps import trust_words
+
 MANY = 0.05
 """Share of texels out of gamut, or at the end of a range, that is worth a warning."""
 FEW_SKIN = 0.2
@@ -19,7 +21,15 @@ FIXED = {
     "eumelanin": ("doubt", "RGB hardly fixes it"),
     "oxygenation": ("doubt", "RGB hardly fixes it"),
 }
-"""How far three colour values determine each map: a level and words."""
+"""How far three colour values determine each map where the model has no σ: a level and words."""
+ADVICE = {
+    "good": "Compare it across a face and between faces captured and calibrated alike; exposure "
+    "and white balance move its absolute values on top.",
+    "care": "Take it as a tendency: other values about as far away give the same colour.",
+    "doubt": "The colour says little more of it than is known of skins in general, and the map "
+    "holds a probable value. It is a control for edits, not a finding.",
+}
+"""What to do with a map of each level."""
 LEVELS = {"good": "Sound", "care": "With care", "doubt": "Doubtful"}
 """Levels of trust in words, since colour alone says nothing to some."""
 
@@ -140,6 +150,16 @@ def findings(report: dict[str, Any]) -> Iterator[tuple[str, str]]:
                 f"{report[key]:,} texels{share} have a colour {what}, which is no albedo; the maps "
                 "hold the nearest skin there.",
             )
+    maps = report.get("maps") or {}
+    told = [(name, trust_words.known(maps, name)) for name in maps]
+    if any(found for _, found in told):
+        yield from _of_confidence(report)
+        for name, found in told:
+            if found is not None:
+                level, known = found
+                spread = trust_words.spread(maps, name)
+                yield level, f"{name.capitalize()}: {known}, {spread} (median σ). {ADVICE[level]}"
+        return
     yield (
         "good",
         "Melanin and blood: three colour values fix these two well. Compare them across a face "
@@ -156,6 +176,21 @@ def findings(report: dict[str, Any]) -> Iterator[tuple[str, str]]:
         "Eumelanin and oxygenation: hardly fixed. Many values give the same colour, and the maps "
         "hold a probable one. They are controls for edits, not findings.",
     )
+
+
+def fixed(report: dict[str, Any], name: str) -> tuple[str, str]:
+    """A level and a few words on how far a map is known: what σ says, else FIXED."""
+    return trust_words.known(report.get("maps") or {}, name) or FIXED[name]
+
+
+def _of_confidence(report: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    share = report.get("low_confidence")
+    if share is not None and share > trust_words.UNSURE:
+        yield (
+            "care",
+            f"{percent(share)} of the mask have a colour that is hardly one of skin; what is said "
+            "of the maps below is said of the rest.",
+        )
 
 
 def _of_colour(report: dict[str, Any]) -> Iterator[tuple[str, str]]:

@@ -3,6 +3,7 @@
 Previews are for the eye; the numbers are in the EXR.
 """
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,8 @@ from cutis.colour import delta_e
 from cutis.figures.layout import COLOUR_MAPS
 from cutis.inverse import Calibration
 from cutis.maps import SkinMaps
-from cutis.optics import PARAMETERS
+from cutis.maps.trust import CONFIDENCE, SIGMA
+from cutis.optics import PARAMETERS, Parameter
 from cutis.textures import replacing
 
 LONGEST = 900
@@ -47,6 +49,9 @@ class Previews:
     def _seen(self, skin: SkinMaps) -> dict[str, NDArray[np.float32]]:
         found = {known.name: getattr(skin, known.name) for known in PARAMETERS}
         found |= {"mask": skin.mask, "model": skin.model_albedo}
+        found |= {name + SIGMA: sigma for name, sigma in skin.sigmas.items()}
+        if skin.confidence is not None:
+            found[CONFIDENCE] = skin.confidence
         if skin.source is not None:
             found["capture"] = skin.source
         return found
@@ -54,7 +59,8 @@ class Previews:
     def pictures(self) -> dict[str, NDArray[np.float32]]:
         """Reduced pictures by name, NaN off the mask.
 
-        `capture` and `model` (h, w, 3) in linear sRGB, `error` (h, w) in ΔE00, the maps (h, w).
+        `capture` and `model` (h, w, 3) in linear sRGB, `error` (h, w) in ΔE00, the maps (h, w) and,
+        where the model knows them, `<map>.sigma` and `confidence` (h, w).
         """
         if self._whole is None:
             whole = {name: np.concatenate(parts) for name, parts in self._parts.items()}
@@ -68,7 +74,11 @@ class Previews:
         return self._whole
 
     def write(self, stem: Path) -> None:
-        """Writes `stem`.<map>.png for the five maps and, with the capture, `stem`.error.png."""
+        """Writes `stem`.<map>.png for the five maps and, with the capture, `stem`.error.png.
+
+        Where the model knows them, `stem`.sigma.png shows σ of all maps side by side, and
+        `stem`.confidence.png how likely each colour is one of skin.
+        """
         pictures = self.pictures()
         for known in PARAMETERS:
             values = pictures[known.name]
@@ -82,6 +92,40 @@ class Previews:
         if "error" in pictures:
             label = "model against capture [ΔE00]"
             _figure(Path(f"{stem}.error.png"), pictures["error"], label, "magma", (0.0, 2.0))
+        if CONFIDENCE in pictures:
+            label, values = "confidence that the colour is one of skin", pictures[CONFIDENCE]
+            _figure(Path(f"{stem}.confidence.png"), values, label, "viridis", (0.0, 1.0))
+        sigmas = [known for known in PARAMETERS if known.name + SIGMA in pictures]
+        if sigmas:
+            _sheet(Path(f"{stem}.sigma.png"), sigmas, pictures)
+
+
+def _sheet(
+    path: Path, sigmas: Sequence[Parameter], pictures: Mapping[str, NDArray[np.float32]]
+) -> None:
+    """σ of the maps in a row, each with its scale below, from 0 to what 99 % stay below."""
+    from matplotlib.figure import Figure
+
+    height, width = pictures[sigmas[0].name + SIGMA].shape
+    cell = min(4.0, 4.0 * width / height)
+    figure = Figure(figsize=(len(sigmas) * cell, cell * height / width + 0.9), dpi=100)
+    rows = figure.subplots(1, len(sigmas), squeeze=False)[0]
+    for axes, known in zip(rows, sigmas, strict=True):
+        values = pictures[known.name + SIGMA]
+        seen = values[np.isfinite(values)]
+        high = float(np.percentile(seen, 99)) if seen.size else 1.0
+        step = max(1, values.shape[1] // 400)
+        shown = axes.imshow(
+            values[::step, ::step], cmap=COLOUR_MAPS[known.name], vmin=0, vmax=max(high, 1e-9),
+            interpolation="nearest",
+        )  # fmt: skip
+        axes.set_axis_off()
+        unit = "" if known.unit == "1" else f" [{known.unit}]"
+        figure.colorbar(
+            shown, ax=axes, orientation="horizontal", label=f"σ of {known.name}{unit}", pad=0.03
+        )
+    with replacing(path) as partial:
+        figure.savefig(partial, facecolor="white", bbox_inches="tight")
 
 
 def _figure(

@@ -52,7 +52,9 @@ def train(
             f"training needs PyTorch ({error.name} is missing); pip install 'cutis[train]'"
         ) from None
     if recipe not in RECIPES:
-        raise CutisError(f"unknown recipe {recipe!r}; known are {MEASURED}, {EXACT}, {', '.join(RECIPES)}")
+        raise CutisError(
+            f"unknown recipe {recipe!r}; known are {MEASURED}, {EXACT}, {', '.join(RECIPES)}"
+        )
     from dataclasses import replace
 
     options.make_folder(folder)
@@ -92,7 +94,12 @@ def _bake(recipe: str, folder: Path, at: Callable[[int, int, str], None]) -> lis
         }
     written = []
     for name, (solve, chart) in jobs.items():
-        baked = bake(solve, chart, lambda done, total, name=name: at(done, total, f"baking {name}"))
+        told = f"baking {name}"
+
+        def say(done: int, total: int, told: str = told) -> None:
+            at(done, total, told)
+
+        baked = bake(solve, chart, say)
         written.append(folder / f"{name}.npz")
         with replacing(written[-1]) as partial:
             save_baked(baked, partial)

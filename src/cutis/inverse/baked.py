@@ -111,9 +111,7 @@ def probable_skins(prior: SkinPrior, space: AlbedoSpace) -> Solver:
     return lambda colours: prior.skins(space, colours)
 
 
-def bake(
-    solve: Solver, chart: Chart, progress: Callable[[int, int], None] | None = None
-) -> Baked:
+def bake(solve: Solver, chart: Chart, progress: Callable[[int, int], None] | None = None) -> Baked:
     """Solves every node of the chart (seconds); `progress(done, total)` is called now and then."""
     colours = chart.colours()
     parts, step = [], -(-len(colours) // 20)
@@ -159,7 +157,9 @@ def load_baked(file: Path) -> Baked:
         low, high = stored["ends"]
         steps = np.cumsum(stored["changes"], axis=2, dtype=np.uint16)
         scale = np.float32((high - low) / 65535)
-        ends = stored["chart"].tolist() if "chart" in stored else (ALIAGA_CHART.low, ALIAGA_CHART.high)
+        ends = (
+            stored["chart"].tolist() if "chart" in stored else (ALIAGA_CHART.low, ALIAGA_CHART.high)
+        )
         cells = tuple(n - 3 for n in steps.shape[:3])
         chart = Chart(tuple(ends[0]), tuple(ends[1]), cells)
         return Baked(np.float32(low) + steps.astype(np.float32) * scale, chart)

@@ -8,7 +8,7 @@ which the model explains the masked skin, with a pull towards 1: it minimises
 r being the relative colour error of the best skin. The first term counts texels out of the
 albedo space and saturates, so that clothes and hair inside the mask do not decide. Nothing pulls
 towards a skin tone; the price is that under-exposure cannot be found, since darker colours are
-skins too. A capture under a light other than D65 is first converted to it (`colour.upsampling`).
+skins too. A capture under a light other than D65 is first converted to it (`to_d65`).
 Conversion and gains are undone on output, so colours come back as they came.
 """
 
@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutis.albedo import albedo_space
+from cutis.albedo.lights import skin_conversion
 from cutis.colour import light_conversion
 from cutis.errors import CutisError
 from cutis.inverse.fit import fit
@@ -73,6 +74,15 @@ class Calibration:
         return captured
 
 
+def to_d65(light: str, tissue: Tissue = ALIAGA2022) -> NDArray[np.float64]:
+    """(3, 3) matrix from the RGB of captures under `light` to that under D65, rgb @ C.T.
+
+    Of the paper's tissue the conversion that the paper took, of mixes of three bands
+    (`colour.light_conversion`); of another, the one that suits its skins (`albedo.lights`).
+    """
+    return light_conversion(light) if tissue == ALIAGA2022 else skin_conversion(light, tissue)
+
+
 def calibrate(
     rgb: ArrayLike,
     white: White = None,
@@ -88,7 +98,7 @@ def calibrate(
     multiplies those of `white`. `white="auto"` looks for three gains, exposure included;
     `exposure="auto"` alone for one common gain.
     """
-    matrix = light_conversion(light)
+    matrix = to_d65(light, tissue)
     conversion = None
     if not np.array_equal(matrix, np.eye(3)):
         conversion = tuple(tuple(float(v) for v in row) for row in matrix)

@@ -18,7 +18,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from cutis.albedo import AlbedoSpace, albedo_space
 from cutis.albedo.sampled import SampledSpace
@@ -70,7 +70,7 @@ class MeasuredSkins:
         rgb = reflectance_to_rgb(self.spectra, self.wavelengths)
         return np.digitize(ita(rgb), ITA_BANDS)
 
-    def some(self, rows: ArrayLike) -> "MeasuredSkins":
+    def some(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> "MeasuredSkins":
         """Those of some rows."""
         return replace(self, spectra=self.spectra[rows], subjects=self.subjects[rows])
 
@@ -86,7 +86,7 @@ def train_prior(
 ) -> SkinPrior:
     """The prior of `tissue` from measured skins. `progress(done, total)` is called per fold."""
     fitter = SpectralFitter(skins.wavelengths, tissue, specular=skins.specular)
-    fitted = to_coordinates(fitter.fit(skins.spectra).values)
+    fitted = np.asarray(to_coordinates(fitter.fit(skins.spectra).values), dtype=np.float64)
     learner = _Learner(skins, tissue, fitted)
     folds = _folds(skins.subjects)
     rest = np.full(fitted.shape, np.nan)
@@ -192,9 +192,9 @@ class _Learner:
         u = prior.skins(self.space, colours).astype(np.float64)
         x = from_coordinates(u)
         _, spectrum = self.sampled.gradient(x)
-        _, colour = self.space.rgb_gradient(x)
+        _, slopes = self.space.rgb_gradient(x)
         chain = (unit_slopes(u) * u * (1 - u))[:, None, :]
-        spectrum, colour = (1 - self.skins.specular) * spectrum * chain, colour * chain
+        spectrum, colour = (1 - self.skins.specular) * spectrum * chain, slopes * chain
         error = TOLERANCE * (colours.mean(axis=1) + 0.01) ** (2 / 3)
         lever = colour @ np.linalg.inv(prior.precision)
         inner = lever @ np.swapaxes(colour, 1, 2) + np.eye(3) * (error**2)[:, None, None]

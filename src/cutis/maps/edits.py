@@ -69,6 +69,20 @@ class Edit:
         result[partial] = np.clip(mixed, low, high)  # rounding may overshoot by a last digit
         return result, clamped
 
+    def sigma(
+        self, sigma: NDArray[np.float32], weight: NDArray[np.float32] | None = None
+    ) -> NDArray[np.float32]:
+        """What the edit makes of a map's standard deviations, in the same units and shape.
+
+        A factor scales σ, an offset leaves it, a set value is known: σ is 0. A weight w takes that
+        much of the change, as of the value. No σ is wider than the range; where a value was clamped
+        to an end σ stays, since the skin beyond that end is no better known.
+        """
+        slope = {"multiply": self.amount, "offset": 1.0, "set": 0.0}[self.operation]
+        known = parameter(self.parameter)
+        scale = np.float32(slope) if weight is None else 1 + weight * np.float32(slope - 1)
+        return np.minimum(sigma * scale, np.float32(known.high - known.low))
+
 
 def parse_edit(name: str, text: str) -> Edit:
     """`x1.4` → multiply, `+0.1` and `-0.1` → offset, `0.02` → set; CutisError for anything else."""

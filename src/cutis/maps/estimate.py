@@ -1,6 +1,6 @@
 """From a capture to its skin maps."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy as np
@@ -24,13 +24,15 @@ def estimate(
     exposure: Exposure = None,
     model: str = "default",
     illuminant: str = "D65",
+    sigma: bool = True,
 ) -> SkinMaps:
     """Skin maps of a texture or of an (H, W, 3) array of linear sRGB.
 
     `mask` (H, W) in [0, 1] says where skin is; without one, wherever alpha is not 0. `white` and
     `exposure` are gains, "auto" or "none" (`inverse.calibration`). `illuminant` is the light of the
-    capture, a name or file that `colour.illuminant` takes. Raises CutisError for arrays
-    of other shapes, NaN or infinite colours, and masks that are empty or of another size.
+    capture, a name or file that `colour.illuminant` takes. `sigma` adds standard deviations and
+    confidence where the model knows them. Raises CutisError for arrays of other shapes, NaN or
+    infinite colours, and masks that are empty or of another size.
     """
     source = _linear(face)
     cover = _cover(face, mask, source.shape[:2])
@@ -39,12 +41,22 @@ def estimate(
         sampler.add(0, source, cover)
     calibration = calibrate(sampler.colours(), white, exposure, illuminant, tissue_of(model))
     maps: dict[str, Any] = {name: np.zeros(cover.shape, dtype=np.float32) for name in NAMES}
+    trust: dict[str, Any] = {}
+    if sigma and load_model(model).to_trust is not None:
+        whole = np.zeros((len(NAMES) + 1, *cover.shape), dtype=np.float32)
+        trust = {"sigmas": dict(zip(NAMES, whole, strict=False)), "confidence": whole[-1]}
     for rows in bands(cover.shape):
-        for name, values in estimate_rows(source[rows], cover[rows], calibration, model).items():
-            maps[name][rows] = values
+        found = estimate_rows(source[rows], cover[rows], calibration, model, sigma)
+        for name in NAMES:
+            maps[name][rows] = found[name]
+        if trust:
+            trust["confidence"][rows] = found["confidence"]
+            for name, values in found["sigmas"].items():
+                trust["sigmas"][name][rows] = values
     provenance = source_note(face) if isinstance(face, Texture) else {}
     return SkinMaps(
         **maps,
+        **trust,
         mask=cover,
         calibration=calibration,
         model=model,
@@ -54,23 +66,51 @@ def estimate(
 
 
 def estimate_rows(
-    source: NDArray[np.float32], cover: NDArray[np.float32], calibration: Calibration, model: str
-) -> dict[str, NDArray[np.float32]]:
-    """Maps (h, W) by name of colours (h, W, 3), linear sRGB as captured, where `cover` is not 0."""
-    inside = cover > 0
-    skins = load_model(model).encode(calibration.apply(source[inside]))
-    maps = {name: np.zeros(cover.shape, dtype=np.float32) for name in NAMES}
-    for i, name in enumerate(NAMES):
-        maps[name][inside] = skins[:, i]
-    return maps
+    source: NDArray[np.float32],
+    cover: NDArray[np.float32],
+    calibration: Calibration,
+    model: str,
+    sigma: bool = True,
+) -> dict[str, Any]:
+    """Maps (h, W) by name of colours (h, W, 3), linear sRGB as captured, where `cover` is not 0.
+
+    With `sigma` also `sigmas` (h, W) by name and `confidence` (h, W), where the model knows them.
+    """
+    inside, known = cover > 0, load_model(model)
+    colours = calibration.apply(source[inside])
+
+    def spread(values: NDArray[np.float32]) -> NDArray[np.float32]:
+        whole = np.zeros((values.shape[1], *cover.shape), dtype=np.float32)
+        whole[:, inside] = values.T
+        return whole
+
+    found: dict[str, Any] = dict(zip(NAMES, spread(known.encode(colours)), strict=True))
+    trust = known.trust(colours) if sigma else None
+    if trust is not None:
+        *sigmas, confidence = spread(trust)
+        found["sigmas"] = dict(zip(NAMES, sigmas, strict=True))
+        found["confidence"] = confidence
+    return found
 
 
 def blank(
-    calibration: Calibration, model: str = "default", provenance: Mapping[str, str] | None = None
+    calibration: Calibration,
+    model: str = "default",
+    provenance: Mapping[str, str] | None = None,
+    sigmas: Collection[str] = (),
+    confident: bool = False,
 ) -> SkinMaps:
-    """Maps of no texels, with what a header says."""
-    nothing: dict[str, Any] = {name: np.zeros((0, 0), np.float32) for name in (*NAMES, "mask")}
-    return SkinMaps(**nothing, calibration=calibration, model=model, provenance=provenance or {})
+    """Maps of no texels, with what a header says; `sigmas` names maps that have one."""
+    none = np.zeros((0, 0), np.float32)
+    nothing: dict[str, Any] = dict.fromkeys((*NAMES, "mask"), none)
+    return SkinMaps(
+        **nothing,
+        calibration=calibration,
+        model=model,
+        provenance=provenance or {},
+        sigmas=dict.fromkeys(sigmas, none),
+        confidence=none if confident else None,
+    )
 
 
 def _linear(face: Texture | ArrayLike) -> NDArray[np.float32]:

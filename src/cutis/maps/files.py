@@ -4,7 +4,8 @@ Parameter maps are data, not colour: no transfer function ever touches them. The
 is not copied; the header names it (relative to the EXR) and its SHA-256, so that an edit can find
 it again and refuses another file. Of edited maps, what the estimate was before is kept as
 `original.<map>`: the capture shows the skin before the edit, so its colours change by the ratio of
-the two, however often the maps are saved and edited again.
+the two, however often the maps are saved and edited again. Standard deviations `<map>.sigma` and
+`confidence` are stored as half in any case, which is more than they are known to.
 """
 
 import contextlib
@@ -24,7 +25,8 @@ from cutis.errors import CutisError
 from cutis.inverse.calibration import Calibration
 from cutis.inverse.models import stored_name
 from cutis.maps.skin_maps import SkinMaps
-from cutis.optics import NAMES, PARAMETERS, RARE, RARE_NAMES, Parameter
+from cutis.maps.trust import CONFIDENCE, SIGMA, stored_sigma
+from cutis.optics import NAMES, PARAMETERS, RARE, RARE_NAMES, Parameter, parameter
 from cutis.textures.closing import Closing
 
 PREFIX = "cutis:"
@@ -58,8 +60,8 @@ def maps_writer(
 ) -> Iterator[Callable[[SkinMaps], None]]:
     """What `save_maps` does, some rows at a time: yields a function that takes the next rows.
 
-    The header is that of `like`; `changed` names the maps that edits may have changed, `rare` the
-    rare chromophores that have a map.
+    The header is that of `like`, and so is whether there are σ and confidence; `changed` names the
+    maps that edits may have changed, `rare` the rare chromophores that have a map.
     """
     known = (*PARAMETERS, *(p for p in RARE if p.name in rare))
     maps = (*(p.name for p in known), "mask")
@@ -76,13 +78,18 @@ def maps_writer(
         raise CutisError(f"maps are stored as float or half, not {dtype}")
     if like.edits:  # without a map before edits, a rare chromophore was not there
         changed = tuple(dict.fromkeys((*changed, *rare)))
-    names = (*maps, *(ORIGINAL + name for name in changed))
-    with textures.channel_writer(path, names, shape, dtype, header) as put:
+    trust = (*(name + SIGMA for name in like.sigmas),)
+    trust += () if like.confidence is None else (CONFIDENCE,)
+    names = (*maps, *(ORIGINAL + name for name in changed), *trust)
+    with textures.channel_writer(path, names, shape, dtype, header, half=trust) as put:
 
         def write(part: SkinMaps) -> None:
-            channels = {name: part.map(name) for name in maps}
+            channels: dict[str, Any] = {name: part.map(name) for name in maps}
             for name in changed:
                 channels[ORIGINAL + name] = (part.original or part).map(name)
+            channels |= {name + SIGMA: part.sigmas[name] for name in like.sigmas}
+            if like.confidence is not None:
+                channels[CONFIDENCE] = part.confidence
             put(channels)
 
         yield write
@@ -92,8 +99,9 @@ class MapsFile(Closing):
     """An open file of skin maps: what its header says, and its maps some rows at a time.
 
     `edits` and `clamped` are those of `SkinMaps`, `rare` names the rare chromophores that have a
-    map, `changed` the maps whose values before edits are stored too. Close it, or use it in a with
-    block. Raises CutisError where channels are missing, out of range, or the header is damaged.
+    map, `changed` the maps whose values before edits are stored too, `sigmas` those whose standard
+    deviations are, and `confident` says whether confidence is. Close it, or use it in a with block.
+    Raises CutisError where channels are missing, out of range, or the header is damaged.
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
@@ -118,10 +126,12 @@ class MapsFile(Closing):
                 "make one with: cutis estimate"
             )
         self.shape = self._file.shape
-        self.rare = tuple(name for name in RARE_NAMES if name in self._file.names)
-        self.changed = tuple(
-            name for name in (*NAMES, *self.rare) if ORIGINAL + name in self._file.names
-        )
+        there = self._file.names
+        self.rare = tuple(name for name in RARE_NAMES if name in there)
+        known = (*NAMES, *self.rare)
+        self.changed = tuple(name for name in known if ORIGINAL + name in there)
+        self.sigmas = tuple(name for name in known if name + SIGMA in there)
+        self.confident = CONFIDENCE in there
         metadata = self._file.metadata
         notes = {k[len(PREFIX) :]: str(v) for k, v in metadata.items() if k.startswith(PREFIX)}
         try:
@@ -149,8 +159,8 @@ class MapsFile(Closing):
         """Slices of rows that cover the maps, of about half a million texels each."""
         return self._file.bands()
 
-    def rows(self, rows: slice) -> SkinMaps:
-        """Maps of some rows, without their capture."""
+    def rows(self, rows: slice, trust: bool = True) -> SkinMaps:
+        """Maps of some rows, without their capture; σ and confidence only if `trust`."""
         channels = self._file.rows(rows)
         mask = channels.get("mask", np.ones(channels["melanin"].shape, dtype=np.float32))
         if not (mask.min() >= 0 and mask.max() <= 1):  # NaN fails too
@@ -164,15 +174,24 @@ class MapsFile(Closing):
             **found, mask=mask, calibration=self.calibration, model=self.model,
             provenance=self.provenance, first_row=rows.indices(self.shape[0])[0], whole=self.shape,
         )  # fmt: skip
+        inside = mask > 0
+        sigmas = {
+            name: np.where(inside, stored_sigma(channels[name + SIGMA], parameter(name)), 0)
+            for name in (self.sigmas if trust else ())
+        }
+        if trust and self.confident:
+            sure = np.clip(np.nan_to_num(channels[CONFIDENCE]), 0, 1)
+            skin = replace(skin, confidence=np.where(inside, sure, 0))
+        trusted = replace(skin, sigmas=sigmas)
         if not (self.edits or self.changed):
-            return skin
+            return trusted
         before: dict[str, Any] = {
             p.name: _checked(self.path, channels[ORIGINAL + p.name], p, mask)
             for p in (*PARAMETERS, *RARE)
             if p.name in self.changed
         }
         original = replace(skin, **before)
-        return replace(skin, original=original, edits=self.edits, clamped=self.clamped)
+        return replace(trusted, original=original, edits=self.edits, clamped=self.clamped)
 
     def no_mask(self) -> CutisError:
         """What to raise when the mask is empty or broken."""

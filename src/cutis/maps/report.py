@@ -9,6 +9,7 @@ from cutis.colour.difference import LIGHTEST_HAIR, PALEST, to_relative_xyz
 from cutis.errors import CutisError
 from cutis.maps.skin_maps import SkinMaps
 from cutis.maps.statistics import Histogram, MapStatistics
+from cutis.maps.trust import TrustStatistics
 from cutis.optics import NAMES, parameter
 from cutis.textures.texture import bands
 
@@ -22,7 +23,7 @@ class Report:
     def __init__(self, like: SkinMaps, shape: tuple[int, int]) -> None:
         """Of an estimate with the model and calibration of `like`, (H, W) texels in all."""
         self._like, self._shape = like, shape
-        self._maps = MapStatistics()
+        self._maps, self._trust = MapStatistics(), TrustStatistics()
         self._errors = Histogram(0.0, 100.0)
         self._angles = Histogram(-180.0, 180.0)
         self._squares, self._masked, self._below, self._above, self._beyond = 0.0, 0, 0, 0, 0
@@ -52,12 +53,14 @@ class Report:
         where[inside] = texels
         u = skin.coordinates()
         self._maps.add(u, inside)
+        self._trust.add(skin.sigmas, skin.confidence, u, inside)
         self._smoothness.add(u, skin.source, where)
 
     def finish(self) -> dict[str, Any]:
         """The numbers; see `report`."""
         like, statistics = self._like, self._maps
         percentiles, histograms = statistics.percentiles(), statistics.histograms()
+        trust, unsure = self._trust.finish(like.model), self._trust.low_confidence()
         result: dict[str, Any] = {
             "model": like.model,
             "size": list(self._shape),
@@ -74,12 +77,15 @@ class Report:
                 name: {
                     "unit": parameter(name).unit,
                     **dict(zip(("p5", "median", "p95"), percentiles[name], strict=True)),
+                    **trust.get(name, {}),
                     "histogram": histograms[name],
                 }
                 for name in NAMES
             },
             "clamped": statistics.clamped(),
         }
+        if unsure is not None:
+            result["low_confidence"] = unsure
         count = self._errors.count
         if count:
             result["colour"] = {
@@ -102,6 +108,9 @@ def report(skin: SkinMaps) -> dict[str, Any]:
     the capture (mean over R, G, B). `below_0` and `above_1` count texels inside the mask with a
     colour that is no albedo. Percentiles are read from histograms of 65 536 bins and more;
     `clamped` is the share of texels at an end of a map's range, `histogram` 64 bars for people.
+    Where the model knows σ, `low_confidence` is the share of the mask with a confidence below 0.5,
+    and over the rest maps have `sigma`, the median in their unit, and `informed`: 1 − σ / σ of the
+    prior in network coordinates, 1 where all is known and 0 where the colour said nothing.
     """
     running = Report(skin, skin.shape)
     running.add(skin)

@@ -61,6 +61,30 @@ def count(u: Any, inside: Any, counts: Any) -> None:
                     counts[p, min(max(place, 0), bins - 1)] += 1
 
 
+@njit(cache=True)
+def count_spread(
+    sigmas: Any, u: Any, inside: Any, root: Any, low: Any, span: Any, width: Any, even: Any,
+    share: Any
+) -> None:  # fmt: skip
+    """Counts standard deviations, five of (h, W), where `inside`.
+
+    `even` (5, bins) in network coordinates, by the slope at u (h, W, 5): v = (low + u span)^root;
+    `share` (5, bins) as shares of the width of the range.
+    """
+    bins = even.shape[1]
+    for row in range(u.shape[0]):
+        for column in range(u.shape[1]):
+            if inside[row, column]:
+                for p in range(5):
+                    sigma, base = sigmas[p][row, column], low[p] + span[p] * u[row, column, p]
+                    slope = span[p]
+                    for _ in range(root[p] - 1):
+                        slope *= base
+                    slope *= root[p]
+                    even[p, min(int(sigma / slope * bins), bins - 1)] += 1
+                    share[p, min(int(sigma / width[p] * bins), bins - 1)] += 1
+
+
 @njit(parallel=True, cache=True)
 def differences(values: Any, where: Any, sums: Any) -> None:
     """Fills sums (h, channels), row by row, with differences of neighbours in values (h, W, …).

@@ -4,7 +4,7 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,6 +17,10 @@ from cutis.maps.patches import patches
 from cutis.maps.statistics import MapStatistics, coordinates
 from cutis.optics import NAMES, RARE_NAMES, Tissue, parameter, with_rare_chromophores
 from cutis.textures.texture import Texture, bands
+
+if TYPE_CHECKING:
+    from cutis.albedo import AlbedoSpace
+    from cutis.maps.relighting import Relighting
 
 Map = NDArray[np.float32]
 
@@ -36,7 +40,9 @@ class SkinMaps:
     the maps were loaded. `original` is the estimate that this was edited from, None for an estimate
     itself; `edits` what was done since, and `clamped` how many texels each edit pushed against the
     end of a range. `provenance` is free text for the file header. Of some rows of a larger image,
-    `first_row` is the number of the first and `whole` the (H, W) of all.
+    `first_row` is the number of the first and `whole` the (H, W) of all. `sigmas` has the standard
+    deviation (H, W) of maps, by name and in their units, where the model knows it, and
+    `confidence` (H, W) in [0, 1] how likely each colour is one of skin; see `sigma`.
 
     All arrays are read-only: a map changed in place would not count as an edit.
     """
@@ -59,19 +65,25 @@ class SkinMaps:
     bilirubin: Map | None = None
     carotene: Map | None = None
     methaemoglobin: Map | None = None
+    sigmas: Mapping[str, Map] = field(default_factory=dict)
+    confidence: Map | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "model", model_name(self.model))
-        for name in (*NAMES, *RARE_NAMES, "mask", "source"):
-            values = getattr(self, name)
-            if values is None:
-                continue
-            view = np.asarray(values, dtype=np.float32).view()
-            view.flags.writeable = False
-            object.__setattr__(self, name, view)
-            expected = (*self.melanin.shape, 3) if name == "source" else self.melanin.shape
-            if view.shape != expected or self.melanin.ndim != 2:
-                raise CutisError(f"{name} is {view.shape}, the maps are {self.melanin.shape}")
+        for name in (*NAMES, *RARE_NAMES, "mask", "source", "confidence"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, self._view(name, getattr(self, name)))
+        sigmas = {name: self._view(f"σ of {name}", found) for name, found in self.sigmas.items()}
+        object.__setattr__(self, "sigmas", sigmas)
+
+    def _view(self, name: str, values: Map) -> Map:
+        """A view that cannot be written to; CutisError where it is of another size than the maps"""
+        view = np.asarray(values, dtype=np.float32).view()
+        view.flags.writeable = False
+        shape = np.shape(self.melanin)
+        if view.shape != ((*shape, 3) if name == "source" else shape) or len(shape) != 2:
+            raise CutisError(f"{name} is {view.shape}, the maps are {shape}")
+        return view
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -117,6 +129,8 @@ class SkinMaps:
             original=None if self.original is None else self.original.rows(rows),
             first_row=self.first_row + first,
             whole=self.whole or self.shape,
+            sigmas={name: sigma[rows] for name, sigma in self.sigmas.items()},
+            confidence=None if self.confidence is None else self.confidence[rows],
         )
         if "model_albedo" in self.__dict__:  # decoded already
             result.__dict__["model_albedo"] = self.model_albedo[rows]
@@ -125,6 +139,18 @@ class SkinMaps:
     def coordinates(self) -> Map:
         """(H, W, 5) network coordinates where the mask is not 0, else 0."""
         return coordinates([getattr(self, name) for name in NAMES], self.mask > 0)
+
+    def sigma(self, name: str) -> Map:
+        """(H, W) standard deviation of a map in its unit, 0 off the mask: `skin.sigma("melanin")`.
+
+        The skin's own value lies within ± 1.645 σ for nine of ten skins (docs/models.md). Edits
+        carry it on: a factor scales it, an offset leaves it, a set value has 0. Raises CutisError
+        for maps without: only some models know it.
+        """
+        if name not in self.sigmas:
+            parameter(name)
+            raise CutisError(f"these maps have no σ of {name}: {self.model} does not know it")
+        return self.sigmas[name]
 
     # editing --------------------------------------------------------------------------------
 
@@ -172,6 +198,9 @@ class SkinMaps:
             weight = everywhere * self._patches() if procedural else everywhere
             edited, clamped = edit(result.map(edit.parameter), weight)
             changes: dict[str, Any] = {edit.parameter: edited}
+            if edit.parameter in result.sigmas:
+                sigma = edit.sigma(result.sigmas[edit.parameter], weight)
+                changes["sigmas"] = {**result.sigmas, edit.parameter: sigma}
             result = replace(
                 result,
                 **changes,
@@ -219,32 +248,57 @@ class SkinMaps:
         result.flags.writeable = False  # it is kept
         return result
 
-    def albedo(self) -> Map:
-        """(H, W, 3) linear sRGB as captured, edits included.
+    def albedo(self, illuminant: str | None = None) -> Map:
+        """(H, W, 3) linear sRGB as captured, edits included; relit where `illuminant` is given.
 
         What the model does not explain (hair, eyes, detail) rides along as the ratio of capture
         to model; texels that no edit changed are those of the capture, bit for bit. Without the
         capture, the model's albedo.
+
+        `illuminant`, a name or file that `colour.illuminant` takes, shows the skin under that light
+        and balanced on it (`maps.relighting`); the light of the capture changes nothing.
         """
+        relight = self._relighting(illuminant)
         if self.source is None:
-            return self.model_albedo.copy()
+            return self.model_albedo.copy() if relight is None else relight.alone(self)
+        if relight is not None:
+            parts = (relight(self.rows(rows), self.source[rows]) for rows in bands(self.shape))
+            return np.concatenate(list(parts))
         result = self.source.copy()
         for rows in bands(self.shape):
             changed, colours = self._changes(rows, self.source[rows])
             result[rows][changed] = colours
         return result
 
-    def retouch(self, texture: Texture) -> Texture:
-        """The texture with the edits in it: same format, depth and space, other texels verbatim."""
+    def relit(self, illuminant: str) -> Map:
+        """(H, W, 3) linear sRGB under another light, edits included: `albedo(illuminant)`."""
+        return self.albedo(illuminant)
+
+    def retouch(self, texture: Texture, illuminant: str | None = None) -> Texture:
+        """The texture with the edits in it: same format, depth and space, other texels verbatim.
+
+        With an `illuminant` all texels are as `albedo(illuminant)` shows them.
+        """
         if texture.shape != self.shape:
             raise CutisError(f"the texture is {texture.shape}, the maps are {self.shape}")
-        everywhere = np.zeros(self.shape, dtype=bool)
+        relight = self._relighting(illuminant)
+        everywhere = np.full(self.shape, relight is not None)
         colours = np.zeros((*self.shape, 3), dtype=np.float32)
         for rows in bands(self.shape):
+            if relight is not None:
+                colours[rows] = relight(self.rows(rows), texture.rows(rows).linear())
+                continue
             changed, edited = self._changes(rows, texture.rows(rows).linear())
             everywhere[rows] = changed
             colours[rows][changed] = edited
         return texture.with_linear(colours, everywhere)
+
+    def _relighting(self, light: str | None) -> "Relighting | None":
+        """How to relight; None where the light is that of the capture."""
+        from cutis.maps.relighting import Relighting
+
+        found = None if light is None else Relighting(self.calibration, self.tissue, light)
+        return found if found is not None and found.changes else None
 
     def _changes(self, rows: slice, source: Map) -> tuple[NDArray[np.bool_], Map]:
         """Texels of some rows that edits changed, and their new colours (n, 3)."""
@@ -286,15 +340,28 @@ class SkinMaps:
 
         A whole 2048² face takes 0.7 GB; give `rows` to go in bands.
         """
+        part = self if rows is None else self.rows(rows)
+        space, skins = part._exact()
+        spectra = space.reflectance(skins)
+        result = np.zeros((*part.shape, spectra.shape[-1]), dtype=np.float32)
+        result[part.mask > 0] = spectra
+        return result
+
+    def colours_under(self, light: str) -> Map:
+        """(n, 3) linear sRGB of the texels of the mask, as `reflectance` has it under `light`.
+
+        Of the maps alone, and balanced on the light.
+        """
+        space, skins = self._exact()
+        return space.rgb(skins, light)
+
+    def _exact(self) -> "tuple[AlbedoSpace, Map]":
+        """The exact albedo space, and the skins (n, 5 or 8) of the texels of the mask."""
         from cutis.albedo import albedo_space
 
-        skins = self.parameters(rows, self._names())
-        inside = self.mask[slice(None) if rows is None else rows] > 0
+        skins = self.parameters(names=self._names())[self.mask > 0]
         tissue = with_rare_chromophores(self.tissue) if self.rare else self.tissue
-        spectra = albedo_space(tissue).reflectance(skins[inside])
-        result = np.zeros((*skins.shape[:2], spectra.shape[-1]), dtype=np.float32)
-        result[inside] = spectra
-        return result
+        return albedo_space(tissue), skins
 
     def statistics(self) -> Iterator[tuple[str, str, float, float, float]]:
         """(name, unit, 5th percentile, median, 95th percentile) of each map inside the mask."""

@@ -54,11 +54,11 @@ class Histogram:
 
     def percentile(self, share: float) -> float:
         """The value below which this share of them lies, to a bin's width."""
-        place = _quantile(self._counts, share)
+        place = quantile(self._counts, share)
         return self._low + (place + 0.5) / BINS * (self._high - self._low)
 
 
-def _quantile(counts: NDArray[np.int64], share: float) -> int:
+def quantile(counts: NDArray[np.int64], share: float) -> int:
     """The first bin up to which at least `share` of all lie."""
     total = np.cumsum(counts)
     return min(int(np.searchsorted(total, share * total[-1])), len(counts) - 1)
@@ -80,7 +80,7 @@ class MapStatistics:
         """Values of each map, in its unit, below which these shares of the texels lie."""
         u = np.zeros((len(shares), len(NAMES)))
         for i, counts in enumerate(self.counts):
-            u[:, i] = [(_quantile(counts, share) + 0.5) / BINS for share in shares]
+            u[:, i] = [(quantile(counts, share) + 0.5) / BINS for share in shares]
         found = from_coordinates(u)
         return {name: [float(v) for v in found[:, i]] for i, name in enumerate(NAMES)}
 
@@ -98,7 +98,7 @@ class MapStatistics:
         """
         result: dict[str, dict[str, list[float] | list[int]]] = {}
         for i, known in enumerate(PARAMETERS):
-            first, last = (_quantile(self.counts[i], share) for share in (0.001, 0.999))
+            first, last = (quantile(self.counts[i], share) for share in (0.001, 0.999))
             width = -(-(last + 1 - first) // SHOWN)
             first = max(0, min(first, BINS - SHOWN * width))
             bars = np.zeros(SHOWN * width, dtype=np.int64)

@@ -121,7 +121,7 @@ class Skin(Closing):
                 )
             assert self.capture is not None
             return Rows(_clipped(self.capture.rows(rows).linear()), None)
-        skin = self.maps.rows(rows)
+        skin = self.maps.rows(rows, trust=False)
         if self.capture is not None:
             skin = replace(skin, source=self.capture.rows(rows).linear())
         if edits:

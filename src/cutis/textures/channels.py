@@ -5,7 +5,7 @@ OpenEXR sorts channels by name, so that a column number means nothing: names do.
 
 import contextlib
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Literal
 
@@ -58,10 +58,12 @@ def channel_writer(
     shape: tuple[int, int],
     dtype: Literal["float", "half"] = "float",
     metadata: Mapping[str, Value] | None = None,
+    half: Collection[str] = (),
 ) -> Iterator[Callable[[Mapping[str, NDArray[np.generic]]], None]]:
     """What `write_channels` does, some rows at a time.
 
-    Yields a function that takes the next rows, top to bottom: arrays (h, W) by name.
+    Yields a function that takes the next rows, top to bottom: arrays (h, W) by name. `half` names
+    channels that are stored as half whatever `dtype` says.
     """
     path, (height, width) = Path(path), shape
     if path.suffix.lower() != ".exr":
@@ -70,6 +72,10 @@ def channel_writer(
         raise problem(path, f"channels are stored as float or half, not {dtype}")
     spec = oiio.ImageSpec(width, height, len(names), dtype)
     spec.channelnames = tuple(names)
+    if dtype == "float" and half:
+        spec.channelformats = tuple(
+            oiio.TypeHalf if name in half else oiio.TypeFloat for name in names
+        )
     spec.attribute("compression", "zip")
     metadata = metadata or {}
     if len({name.lower() for name in metadata}) < len(metadata):

@@ -1,0 +1,61 @@
+"""What σ says of the maps of one face, in words: for the summary, `cutis info` and the page.
+
+A map is *informed* by 1 − σ / σ of the prior (`maps.trust`): 1 when the colour fixes it, 0 when the
+colour says no more than was known of skins before.
+"""
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+WELL, ROUGHLY = 0.7, 0.35
+"""Informed by at least this much a map is well known, or roughly; below it is hardly known."""
+DARK = 0.1
+"""Median melanin from which blood that is hardly known is called hidden by melanin: little light
+comes back from below such an epidermis."""
+BELOW = ("blood", "oxygenation")
+"""Maps of what lies below the epidermis."""
+FRACTIONS = ("melanin", "blood")
+"""Maps whose σ is said as a share of their median: they span powers of ten."""
+UNSURE = 0.05
+"""Share of texels with a low confidence that is worth a word."""
+
+Maps = Mapping[str, Mapping[str, Any]]
+"""By name what a report says of each map: `median`, `unit`, and `sigma`, `informed` if known."""
+
+
+def known(maps: Maps, name: str) -> tuple[str, str] | None:
+    """A level of `page_words.LEVELS` and words on how far a map is known; None without σ."""
+    informed = maps.get(name, {}).get("informed")
+    if informed is None or not math.isfinite(informed):
+        return None
+    if informed >= WELL:
+        return "good", "well known"
+    if informed >= ROUGHLY:
+        return "care", "roughly known"
+    if name in BELOW and maps.get("melanin", {}).get("median", 0) >= DARK:
+        return "doubt", "hidden by melanin on this face"
+    return "doubt", "hardly known"
+
+
+def spread(maps: Maps, name: str) -> str:
+    """Median σ of a map as ± so much, relative for FRACTIONS: "±8 %", "±22 µm"."""
+    row = maps[name]
+    sigma, unit = row["sigma"], row["unit"]
+    if name in FRACTIONS and row.get("median"):
+        share = 100 * sigma / row["median"]
+        return f"±{share:.0f} %" if share < 100 else "± more than its value"
+    return f"±{sigma:.2g}" + ("" if unit == "1" else f" {unit}")
+
+
+def lines(maps: Maps, low_confidence: float | None) -> Iterator[str]:
+    """A line for each map with σ, and one where many texels are not sure to be skin."""
+    for name in maps:
+        found = known(maps, name)
+        if found is not None:
+            yield f"{name}: {found[1]}, {spread(maps, name)}"
+    if low_confidence is not None and low_confidence > UNSURE:
+        yield (
+            f"{100 * low_confidence:.0f} % of the mask have a colour that is hardly one of skin; "
+            "they are not in these words"
+        )
