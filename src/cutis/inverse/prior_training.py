@@ -191,10 +191,11 @@ class _Learner:
         colours = self.colours[rows]
         u = prior.skins(self.space, colours).astype(np.float64)
         x = from_coordinates(u)
-        _, spectrum = self.sampled.gradient(x)
-        _, slopes = self.space.rgb_gradient(x)
+        _, by_band = self.sampled.gradient(x)
+        _, by_channel = self.space.rgb_gradient(x)
         chain = (unit_slopes(u) * u * (1 - u))[:, None, :]
-        spectrum, colour = (1 - self.skins.specular) * spectrum * chain, slopes * chain
+        spectrum = (1 - self.skins.specular) * by_band * chain
+        colour = by_channel * chain
         error = TOLERANCE * (colours.mean(axis=1) + 0.01) ** (2 / 3)
         lever = colour @ np.linalg.inv(prior.precision)
         inner = lever @ np.swapaxes(colour, 1, 2) + np.eye(3) * (error**2)[:, None, None]
