@@ -275,7 +275,7 @@ def test_flags_of_spectrum(arguments, message, cutis, one_line):
 
 def test_unknown_recipes(cutis, one_line, tmp_path):
     line = one_line(cutis("train", "mystery", "-o", tmp_path / "run"))
-    assert "unknown recipe 'mystery'; known are default, aliaga2022" in line
+    assert "unknown recipe 'mystery'; known are measured2026, aliaga2022-exact, aliaga2022" in line
     assert not (tmp_path / "run").exists()
 
 

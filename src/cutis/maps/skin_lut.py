@@ -6,7 +6,8 @@ light, their logarithms to
     u = log G,   v = log R − log G,   w = log B − log G,
 
 in which skins of every lightness lie side by side, and each of the three by straight lines to
-the grid: all but a few cells over skin, the others over all that is left of RGB. After the grid
+the grid: all but a few cells over skin, narrower where more skins are, the others over all that is
+left of RGB. After the grid
 everything is undone. A grid that moves nothing is exact between its nodes too, so what is not skin
 passes unchanged.
 """
@@ -36,8 +37,11 @@ AROUND = 2
 """Cells beside skin at each end of an axis: one in which an edit fades, one for all the rest."""
 FADE = 0.25
 """Width of the first of them, in natural logarithms."""
-STEPS = 1024
-"""Cells of the curves that spread the grid."""
+EVEN = 0.5
+"""Share of the nodes over skin that lie evenly; the others lie as skins do."""
+STEPS = 8192
+"""Cells of the curves that spread the grid: many to each of the grid's, whose ends are rounded to
+theirs so that what the edit leaves is left exactly."""
 TO_UVW = np.array([[0.0, 1.0, 0.0], [1.0, -1.0, 0.0], [0.0, -1.0, 1.0]])
 """Logarithms of red, green, blue → u, v, w."""
 
@@ -87,18 +91,18 @@ def skin_lut(
         )
     to_srgb = np.asarray(space.to_linear_srgb(np.eye(3)), dtype=np.float64)  # rows: primaries
     from_srgb = np.linalg.inv(to_srgb)
-    first, step, starts, ends = _axes(calibration or Calibration(), from_srgb, tissue)
+    skins = _skins(calibration or Calibration(), from_srgb, tissue)
+    first, step, starts, ends = _axes(skins)
     matrix = TO_UVW / (STEPS * step)[:, None]
     shift = -first / (STEPS * step)
-    cell = 1 / (size - 1)
     spread, gather = np.empty((STEPS + 1, 3)), np.empty((size, 3))
     for axis in range(3):
         fade = np.ceil(FADE / step[axis])
         low, high = starts[axis], ends[axis]
-        at = np.array([0, low - fade, low, high, high + fade, STEPS]) / STEPS
-        to = np.array([0, cell, 2 * cell, 1 - 2 * cell, 1 - cell, 1])
-        spread[:, axis] = np.interp(np.linspace(0, 1, STEPS + 1), at, to)
-        gather[:, axis] = np.interp(np.linspace(0, 1, size), to, at)
+        over = _nodes((skins[:, axis] - first[axis]) / step[axis], low, high, size - 2 * AROUND)
+        gather[:, axis] = np.array([0, low - fade, *over, high + fade, STEPS]) / STEPS
+        nodes = np.linspace(0, 1, size)
+        spread[:, axis] = np.interp(np.linspace(0, 1, STEPS + 1), gather[:, axis], nodes)
     logs = (gather[_grid(size), np.arange(3)] - shift) @ np.linalg.inv(matrix).T
     colours = (np.exp(logs) - OFFSET) @ to_srgb
     captured = np.maximum(colours, 0).astype(np.float32)
@@ -140,16 +144,27 @@ def _grid(size: int) -> NDArray[np.int64]:
     return np.indices((size, size, size)).reshape(3, -1).T
 
 
-def _axes(
-    known: Calibration, from_srgb: Array, tissue: Tissue
-) -> tuple[Array, Array, Array, Array]:
+def _skins(known: Calibration, from_srgb: Array, tissue: Tissue) -> Array:
+    """(n, 3) u, v, w of the albedo space under the light of the capture."""
+    skins = known.undo(albedo_space(tissue).rgb(halton(20_000, 3))) @ from_srgb
+    return np.asarray(np.log(np.maximum(skins, 0) + OFFSET) @ TO_UVW.T)
+
+
+def _nodes(places: Array, low: float, high: float, count: int) -> Array:
+    """(count,) steps from `low` to `high`, EVEN of them evenly and the rest as skins' `places`."""
+    line = np.linspace(low, high, STEPS + 1)
+    share = np.searchsorted(np.sort(places), line) / len(places)
+    share[0], share[-1] = 0, 1
+    share += EVEN * (np.linspace(0, 1, STEPS + 1) - share)
+    return np.round(np.interp(np.linspace(0, 1, count), share, line))
+
+
+def _axes(skins: Array) -> tuple[Array, Array, Array, Array]:
     """First value and step (3,) of the curves over u, v, w; their steps at which skin starts, ends.
 
-    Skin is all of the albedo space under the light of the capture.
+    `skins` (n, 3) are u, v, w of all that is skin.
     """
-    skins = known.undo(albedo_space(tissue).rgb(halton(20_000, 3))) @ from_srgb
-    logs = np.log(np.maximum(skins, 0) + OFFSET) @ TO_UVW.T
-    low, high = logs.min(axis=0), logs.max(axis=0)
+    low, high = skins.min(axis=0), skins.max(axis=0)
     low[0] -= 1.0  # creases
     black, white = np.log(OFFSET), np.log(BRIGHTEST + OFFSET)
     least = np.array([black, black - white, black - white])
