@@ -1,13 +1,17 @@
 """Edits of rare chromophores: what they do to maps, colours, spectra and files."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from cutis.albedo.rare import rare_ratio
+from cutis.colour import reflectance_to_rgb
 from cutis.errors import CutisError
 from cutis.inverse.models import Model, load_model
 from cutis.maps import Edit, estimate, load_maps, presets, save_maps
 from cutis.maps.recolouring import recolouring
+from cutis.maps.relighting import STEEPEST
 from cutis.optics import ALIAGA2022, MEASURED2026, NAMES, RARE_NAMES, WAVELENGTHS
 from cutis.textures import read_channels
 
@@ -86,6 +90,18 @@ def test_spectra_have_them_too(skin):
     assert np.all(after < before)
 
 
+def test_other_lights_see_them(skin):
+    """What the model explains is the spectrum with them, summed under the light."""
+    ill, inside = skin.multiply(melanin=1.3).replace(bilirubin=0.05), skin.mask == 1
+    before = reflectance_to_rgb(skin.reflectance(), WAVELENGTHS)
+    after = reflectance_to_rgb(ill.reflectance(), WAVELENGTHS, "A")
+    ratio = np.clip(after / np.maximum(before, 1e-4), 0, STEEPEST)
+    found, plain = ill.relit("A"), skin.multiply(melanin=1.3).relit("A")
+    expected = after + (skin.source - before) * ratio
+    np.testing.assert_allclose(found[inside], expected[inside], atol=1e-5)
+    assert np.median(found[inside][:, 2] / plain[inside][:, 2]) < 0.9
+
+
 def test_painted_masks_narrow_them(skin, face_rgb):
     where = np.zeros(skin.shape, np.float32)
     where[: skin.shape[0] // 2] = 1
@@ -114,6 +130,25 @@ def test_files_keep_them(skin, tmp_path, dtype):
         assert np.array_equal(base, skin.parameters(names=(*NAMES, *RARE_NAMES)))
     rows = slice(3, 9)
     assert np.array_equal(ill.rows(rows).carotene, ill.carotene[rows])
+
+
+def test_sigma_goes_with_them(skin, tmp_path):
+    """That of the five stays with an edit; of a file, also that of a rare map, as a fit has it."""
+    sigma = {name: np.where(skin.mask > 0, 0.01, 0).astype(np.float32) for name in NAMES}
+    known = replace(skin, sigmas=sigma, confidence=skin.mask)
+    ill = known.replace(bilirubin=0.05)
+    ill.save(tmp_path / "edited.skin.exr")
+    again = load_maps(tmp_path / "edited.skin.exr")
+    assert (again.rare, set(again.sigmas)) == (("bilirubin",), {*NAMES})
+    np.testing.assert_allclose(again.sigma("blood"), sigma["blood"], rtol=1e-3)
+    fitted = replace(ill, sigmas={**sigma, "bilirubin": 0.2 * ill.bilirubin})
+    fitted.multiply(bilirubin=2).save(tmp_path / "fitted.skin.exr")
+    again = load_maps(tmp_path / "fitted.skin.exr")
+    np.testing.assert_allclose(again.bilirubin, 2 * ill.bilirubin)
+    np.testing.assert_allclose(again.sigma("bilirubin"), 0.4 * ill.bilirubin, rtol=1e-3)
+    np.testing.assert_allclose(
+        again.rows(slice(2, 5)).sigma("bilirubin"), again.sigma("bilirubin")[2:5]
+    )
 
 
 def test_luts_do_what_edits_do(skin, face_rgb):
