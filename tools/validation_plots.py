@@ -48,16 +48,16 @@ STYLE = {
 
 
 def band_colours(study: Study) -> dict[int, Array]:
-    """sRGB of a skin of every band, in light 1.6 times as bright as white paper needs.
+    """sRGB of the skin of every band, to tell them apart.
 
-    From the darker ones of the dark to the lighter ones of the very light, to tell them apart.
+    As light as the darker ones of the dark to the lighter ones of the very light, 1.6 times.
     """
     skins, colours = study.skins, {}
     for band in np.unique(skins.bands):
         of = skins.albedo[skins.bands == band]
-        place = int((0.1 + 0.16 * band) * (len(of) - 1))
-        skin = of[np.argsort(of.mean(axis=1))[place]]
-        colours[int(band)] = np.clip(encode_srgb(1.6 * skin), 0, 1)
+        mean, lightness = of.mean(axis=0), of.mean(axis=1)
+        scale = np.percentile(lightness, 10 + 16 * band) / mean.mean()
+        colours[int(band)] = np.clip(encode_srgb(1.6 * scale * mean), 0, 1)
     return colours
 
 
