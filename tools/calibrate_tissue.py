@@ -40,7 +40,6 @@ RANGES = {
     "bilirubin": (0.0, 0.05),  # g/L of blood
     "beta_carotene_epidermis": (0.0, 1.6e-3),  # g/L, all carotenoids [ribayamercado1995]
     "beta_carotene_dermis": (0.0, 1e-3),  # g/L of blood
-    "carotene_shift": (0.0, 20.0),  # nm, hexane to lipid, carotene to lycopene [britton1995]
     "specular": (0.02, 0.05),  # n = 1.33 to 1.57
 }
 PINNED = {"eumelanin_power": "eumelanin_scale", "pheomelanin_power": "pheomelanin_scale"}
@@ -57,7 +56,7 @@ STEPS = (
     ({"hemoglobin_shift": -1.5}, ("hemoglobin_shift",)),
     ({}, ("eumelanin_power", "pheomelanin_power")),
     ({"hemoglobin_table": "bosschaart2014-prahl1999"}, ()),
-    ({"carotene_shift": 15.0}, ("beta_carotene_epidermis", "carotene_shift")),
+    ({"carotene_shift": 15.0, "beta_carotene_epidermis": 1.6e-3}, ("beta_carotene_epidermis",)),
     ({}, ("specular",)),
     ({}, ("scattering_500", "dermis_scattering", "rayleigh_fraction")),
     ({"vessel_radius": 1.0}, ("vessel_radius",)),

@@ -31,7 +31,7 @@ DARKEST = 1e-4
 """Albedo that logarithms are taken of at least."""
 LOGIT = 6.0
 """Bound on the expected logits."""
-TOLERANCE = 0.0015
+TOLERANCE = 0.001
 """Relative colour error worth one standard deviation of the prior (see `fit.py`)."""
 UNLIKE = 1.5
 """Multiple of `radius` at which colours are half as likely to be skin."""
