@@ -1,7 +1,7 @@
 """Rebuilds the tables of src/cutis/data/albedo: run `python tools/build_albedo_table.py`.
 
-aliaga2022.npz and measured2026.npz, spectra from the exact solver, and the same names with -rgb,
-the colours of all skins.
+aliaga2022.npz and measured2026.npz, spectra from the exact solver, the same names with -rare,
+those with rare chromophores, and with -rgb, the colours of all skins.
 """
 
 from collections.abc import Callable
@@ -13,16 +13,18 @@ from rich.progress import Progress
 
 from cutis.albedo import AlbedoSpace
 from cutis.albedo.colour_table import SHIPPED, build_colours, save_colours
-from cutis.albedo.spectral_table import SpectralTable, build, save
-from cutis.optics import Tissue
+from cutis.albedo.spectral_table import SpectralTable, build, save, table_file
+from cutis.optics import Tissue, with_rare_chromophores
 
 FOLDER = Path(__file__).parents[1] / "src" / "cutis" / "data" / "albedo"
 
 
 def main() -> None:
     for tissue in SHIPPED:
+        rare = with_rare_chromophores(tissue)
+        write(table_file(rare), partial(save, solved(rare)))
         table = solved(tissue)
-        write(f"{tissue.name}.npz", partial(save, table))
+        write(table_file(tissue), partial(save, table))
         colours = build_colours(AlbedoSpace(table))
         write(f"{tissue.name}-rgb.npz", partial(save_colours, colours))
 

@@ -97,6 +97,25 @@ def test_saved_maps_can_be_edited_again(maps, cutis, tmp_path):
     assert digest(tmp_path / "a.png") == digest(tmp_path / "b.png")
 
 
+def test_rare_chromophores_are_kept_with_the_maps(maps, cutis, tmp_path):
+    """By flag or preset, in saved maps, and in edits of those."""
+    ill, again, once = tmp_path / "ill.exr", tmp_path / "again.png", tmp_path / "once.png"
+    ended = cutis("edit", maps, "--preset", "jaundice", "--save-maps", ill, "-o", again)
+    assert ended.out.splitlines()[0] == "bilirubin 0.04"
+    skin = load_maps(ill)
+    assert skin.rare == ("bilirubin",)
+    assert not skin.original.bilirubin.any()
+    assert "bilirubin: 0.04 to 0.04 g/L" in cutis("info", ill).out
+    cutis("edit", maps, "--bilirubin", "0.04", "-o", once)
+    assert digest(again) == digest(once)
+    cutis("edit", ill, "--methaemoglobin", "0.2", "--bilirubin", "x0.5", "-o", again)
+    cutis("edit", maps, "--methaemoglobin", "0.2", "--bilirubin", "0.02", "-o", once)
+    np.testing.assert_array_equal(package.read(again).pixels, package.read(once).pixels)
+    unchanged = cutis("edit", maps, "--carotene", "0", "-o", once)
+    assert "0 texels changed" in unchanged.out
+    assert "outside its range" in cutis("edit", maps, "--carotene", "1", "-o", once).err
+
+
 def test_the_capture_is_never_overwritten(maps, cutis, one_line, tmp_path):
     face = maps.parents[1] / "face.png"
     before = digest(face), digest(maps)

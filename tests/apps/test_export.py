@@ -26,6 +26,14 @@ def test_a_lut_is_written(cutis, tmp_path):
     assert len(lines) == 2 + 9**3
 
 
+def test_a_lut_of_a_rare_chromophore(cutis, tmp_path):
+    ended = cutis("export", tmp_path / "ill.cube", "--preset", "jaundice", "--size", "17")
+    assert (ended.code, ended.err) == (0, "")
+    light = np.array([[0.85, 0.68, 0.58]])
+    red, green, blue = (applied(tmp_path / "ill.cube", light) - light)[0]
+    assert blue < -0.02 < green < red + 0.01
+
+
 def test_the_calibration_of_maps_is_taken(maps, cutis, tmp_path):
     """A LUT made for a capture that was balanced differs from one that was not."""
     from dataclasses import replace

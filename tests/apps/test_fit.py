@@ -9,7 +9,14 @@ import pytest
 from cutis.albedo import albedo_space
 from cutis.albedo.sampled import SampledSpace
 from cutis.maps.files import MapsFile
-from cutis.optics import MEASURED2026, NAMES, from_coordinates, to_coordinates
+from cutis.optics import (
+    ALIAGA2022,
+    MEASURED2026,
+    NAMES,
+    from_coordinates,
+    to_coordinates,
+    with_rare_chromophores,
+)
 from cutis.textures import read_channels, write_channels
 
 LAM = np.arange(400.0, 701.0, 10.0)
@@ -26,7 +33,7 @@ def skins():
 @pytest.fixture(scope="module")
 def spectra(skins):
     """(12, 31) albedo of them."""
-    return SampledSpace(albedo_space(), LAM).reflectance(skins).astype(float)
+    return SampledSpace(albedo_space(MEASURED2026), LAM).reflectance(skins).astype(float)
 
 
 def write_columns(path, values, lam=LAM):
@@ -101,9 +108,53 @@ def test_specular_part_and_held_parameters(cutis, tmp_path, skins, spectra):
 def test_tissue_and_shift_are_said(cutis, tmp_path, skins):
     values = SampledSpace(albedo_space(MEASURED2026), LAM + 1.5).reflectance(skins).astype(float)
     path = write_columns(tmp_path / "a.csv", values)
-    ended = cutis("fit", path, "--tissue", "measured2026", "--shift", 1.5)
+    ended = cutis("fit", path, "--shift", 1.5)
     assert "measured2026, surface reflection 0, wavelengths shifted by 1.5 nm" in ended.err
     assert near(read_skins(ended.out)[1], skins)
+    values = SampledSpace(albedo_space(ALIAGA2022), LAM).reflectance(skins).astype(float)
+    ended = cutis("fit", write_columns(path, values), "--tissue", "aliaga2022")
+    assert "aliaga2022, surface reflection 0" in ended.err
+    assert near(read_skins(ended.out)[1], skins)
+
+
+def rare_spectra():
+    """(12, 8) skins with bilirubin and methaemoglobin, and their (12, 31) spectra."""
+    rng = np.random.default_rng(9)
+    low, high = [0.01, 0.01, 50, 0.3, 0.3, 0.01, 0, 0.1], [0.08, 0.05, 120, 0.9, 0.9, 0.06, 0, 0.4]
+    skins = rng.uniform(low, high, (12, 8))
+    space = albedo_space(with_rare_chromophores(MEASURED2026))
+    return skins, SampledSpace(space, LAM).reflectance(skins).astype(float)
+
+
+def test_rare_chromophores_are_found_or_held(cutis, tmp_path):
+    skins, values = rare_spectra()
+    path = write_columns(tmp_path / "a.csv", values)
+    flags = "--free", "bilirubin", "--free", "methaemoglobin", "--noise", "0.001"
+    rows = read_skins(cutis("fit", path, *flags).out)[0]
+    assert "carotene" not in rows[0]
+    for name, column in (("bilirubin", 5), ("methaemoglobin", 7)):
+        found = np.array([[float(row[name]), float(row[f"{name}_sigma"])] for row in rows])
+        assert np.all(np.abs(found[:, 0] - skins[:, column]) < found[:, 1])
+    held = cutis("fit", path, "--bilirubin", "0.1", "--free", "methaemoglobin")
+    rows = read_skins(held.out)[0]
+    assert {(row["bilirubin"], row["bilirubin_sigma"]) for row in rows} == {("0.1", "0")}
+
+
+def test_rare_chromophores_of_a_cube_are_maps(cutis, tmp_path):
+    skins, values = rare_spectra()
+    np.save(tmp_path / "a.npy", values.reshape(3, 4, -1).astype(np.float32))
+    np.savetxt(tmp_path / "a.wavelengths.txt", LAM)
+    out = tmp_path / "a.skin.exr"
+    flags = "--free", "bilirubin", "--free", "methaemoglobin"
+    ended = cutis("fit", tmp_path / "a.npy", *flags, "-o", out)
+    assert ended.code == 0, ended.err
+    with MapsFile(out) as file:
+        maps = file.rows(slice(0, 3))
+    assert maps.rare == ("bilirubin", "methaemoglobin")
+    np.testing.assert_allclose(maps.bilirubin.ravel(), skins[:, 5], atol=0.003)
+    np.testing.assert_allclose(maps.methaemoglobin.ravel(), skins[:, 7], atol=0.01)
+    assert "bilirubin.sigma" in read_channels(out)[0]
+    assert "methaemoglobin: 0." in cutis("info", out).out
 
 
 def test_range_leaves_wavelengths_out(cutis, tmp_path, skins, spectra):
@@ -151,7 +202,10 @@ def test_micrometres_are_announced(cutis, tmp_path, skins, spectra):
         (lambda y, lam: (y, lam), ["--noise", "0"], "noise"),
         (lambda y, lam: (y, lam), ["--scale", "0"], "scale"),
         (lambda y, lam: (y, lam), ["--shift", "40"], "shift"),
-        (lambda y, lam: (y, lam), ["--tissue", "skin"], "--tissue is"),
+        (lambda y, lam: (y, lam), ["--tissue", "skin"], "unknown tissue"),
+        (lambda y, lam: (y[:, :5], lam[:5]), ["--free", "carotene"], "for 6 free parameters"),
+        (lambda y, lam: (y, lam), ["--free", "water"], "water cannot be freed"),
+        (lambda y, lam: (y, lam), ["--bilirubin", "2"], "bilirubin = 2 is outside its range"),
         (lambda y, lam: (y, lam), ["-o", "skins.txt"], "end its name in .csv"),
         (lambda y, lam: (y, lam), ["-o", "absent/skins.csv"], "does not exist"),
     ],

@@ -1,4 +1,4 @@
-"""Presets have the amounts of the paper."""
+"""Presets have the amounts of the paper, or of physiology."""
 
 import pytest
 
@@ -25,6 +25,10 @@ AMOUNTS = {
     "tanning": (Edit("melanin", "multiply", 1.4), Edit("eumelanin", "set", 0.001)),
     "flushing": (Edit("blood", "multiply", 1.7), Edit("oxygenation", "set", 0.999)),
     "vitiligo": (Edit("melanin", "set", 0.001, "patches"),),
+    "jaundice": (Edit("bilirubin", "set", 0.04),),
+    "carotenaemia": (Edit("carotene", "set", 0.015),),
+    "cyanosis": multiply("oxygenation", 0.4),
+    "methaemoglobinaemia": (Edit("methaemoglobin", "set", 0.3),),
 }
 
 

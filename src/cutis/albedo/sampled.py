@@ -13,7 +13,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cutis.albedo.space import AlbedoSpace
+from cutis.albedo.space import AlbedoSpace, absorptions
 from cutis.errors import CutisError
 from cutis.optics import WAVELENGTHS
 
@@ -43,18 +43,8 @@ class SampledSpace:
     def model(self) -> tuple[Array, Array, Array, Array, Array, Array]:
         """What the kernels of `sampled_kernel.py` take after the slots."""
         tissue, lam = self.space.tissue, self.wavelengths
-        spectra = np.array(
-            [
-                tissue.eumelanin(lam),
-                tissue.pheomelanin(lam),
-                tissue.epidermis_background(lam),
-                *tissue.whole_blood(lam),
-                tissue.baseline(lam),
-            ],
-            dtype=np.float32,
-        )
         _, table, low, scale, _ = self.space.model
-        return (spectra, self._bands, self._blends, table, low, scale)
+        return (absorptions(tissue, lam), self._bands, self._blends, table, low, scale)
 
     def reflectance(self, parameters: ArrayLike) -> NDArray[np.float32]:
         """(m, p) free parameters of the tissue → (m, n) albedo."""

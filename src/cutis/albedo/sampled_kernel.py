@@ -1,6 +1,6 @@
 """Compiled spectra at any wavelengths, with exact slopes: parameters → albedo and ∂albedo.
 
-Parameters, `slots` and `spectra` are those of `spline.py`, but `spectra` (6, n) holds absorptions
+Parameters, `slots` and `spectra` are those of `spline.py`, but `spectra` holds absorptions
 at n wavelengths of the caller's. Wavelength i lies `blends[i]` of the way from band `bands[i]` of
 the table to the next; what is blended is transport, which is smooth, not absorption.
 """
@@ -10,7 +10,13 @@ from typing import Any
 import numpy as np
 from numba import njit, prange
 
-from cutis.albedo.spline import cubic_weights, locate_cell, mixtures, weight_slopes
+from cutis.albedo.spline import (
+    cubic_weights,
+    locate_cell,
+    mixtures,
+    parameter_slopes,
+    weight_slopes,
+)
 
 BLOCK = 64
 """Skins that one task works on."""
@@ -89,16 +95,10 @@ def spectrum_and_slope(
             by_t += f * (above[3] - by_t)
         by_e *= QUARTER * re / epidermis  # d μ^¼ / dμ = μ^¼ / 4μ; d log t / dt = 1/t
         by_d *= QUARTER * rd / dermis
-        oxygen = spectra[4, n] - spectra[3, n]
         spectrum[n] = value
-        slope[n, 0] = by_e * (pigment - spectra[2, n])
-        slope[n, 1] = by_d * (blood - spectra[5, n])
-        slope[n, 2] = by_t / x[2]
-        slope[n, 3] = by_e * x[0] * (spectra[0, n] - spectra[1, n])
-        slope[n, 4] = by_d * x[1] * oxygen
-        if len(slots) > 5:
-            slope[n, 4] += by_e * x[5] * oxygen
-            slope[n, 5] = by_e * (blood - spectra[2, n])
+        slopes = parameter_slopes(x, slots, spectra, n, pigment, blood, by_e, by_d, by_t / x[2])
+        for p in range(len(slots)):
+            slope[n, p] = slopes[p]
 
 
 @njit(parallel=True, fastmath=True, cache=True)

@@ -13,13 +13,12 @@ from cutis.colour import spectrum_to_rgb
 from cutis.errors import CutisError
 from cutis.optics import (
     ALIAGA2022,
-    EPIDERMAL_BLOOD,
     NAMES,
-    PARAMETERS,
     WAVELENGTHS,
     Parameter,
     Tissue,
 )
+from cutis.optics.tissue import CAROTENE_IN_DERMIS
 
 Array: TypeAlias = NDArray[np.float32]
 BAND = 1 << 18
@@ -36,18 +35,9 @@ class AlbedoSpace:
     def __init__(self, table: SpectralTable) -> None:
         """Of an existing table; `albedo_space` makes and keeps the common ones."""
         tissue = table.tissue
-        deoxygenated, oxygenated = tissue.whole_blood(WAVELENGTHS)
-        spectra = [
-            tissue.eumelanin(WAVELENGTHS),
-            tissue.pheomelanin(WAVELENGTHS),
-            tissue.epidermis_background(WAVELENGTHS),
-            deoxygenated,
-            oxygenated,
-            tissue.baseline(WAVELENGTHS),
-        ]
         self.tissue = tissue
         self.table = table
-        self._spectra = np.array(spectra, dtype=np.float32)
+        self._spectra = absorptions(tissue, WAVELENGTHS)
         self._axes = (
             table.low.astype(np.float32),
             (np.array(CELLS) / (table.high - table.low)).astype(np.float32),
@@ -116,8 +106,8 @@ class AlbedoSpace:
 
     @cached_property
     def every_parameter(self) -> tuple[Parameter, ...]:
-        """What kernels take: the five, fixed or free, and epidermal blood where there is any."""
-        return (*PARAMETERS, EPIDERMAL_BLOOD) if self.tissue.epidermal_blood else PARAMETERS
+        """What kernels take: all of the tissue's, fixed or free."""
+        return self.tissue.every_parameter
 
     @cached_property
     def slots(self) -> tuple[int, ...]:
@@ -130,16 +120,37 @@ class AlbedoSpace:
         return tuple(self.every_parameter.index(p) for p in self.tissue.parameters)
 
     def rows(self, parameters: ArrayLike) -> tuple[NDArray[np.floating], tuple[int, ...]]:
-        """(n, 5 or 6) of every parameter, those that the tissue holds included, and the shape."""
+        """(n, p) of every parameter, those that the tissue holds included, and the shape."""
         values = np.asarray(parameters)
         flat = values.reshape(-1, len(self.places))
-        if self.tissue.parameters != PARAMETERS:
+        if self.tissue.fixed:
             whole = np.empty((len(flat), len(self.every_parameter)))
             for name, value in self.tissue.fixed:
                 whole[:, NAMES.index(name)] = value
             whole[:, self.places] = flat
             flat = whole
         return flat, values.shape[:-1]
+
+
+def absorptions(tissue: Tissue, wavelengths: NDArray[np.float64]) -> NDArray[np.float32]:
+    """(6 or 10, n) the `spectra` of `spline.py` at wavelengths (n,), nm."""
+    lam = wavelengths
+    spectra = [
+        tissue.eumelanin(lam),
+        tissue.pheomelanin(lam),
+        tissue.epidermis_background(lam),
+        *tissue.whole_blood(lam),
+        tissue.baseline(lam),
+    ]
+    if tissue.rare_chromophores:
+        carotene = tissue.added_carotene(lam)
+        spectra += [
+            tissue.added_bilirubin(lam),
+            carotene,
+            CAROTENE_IN_DERMIS * carotene,
+            tissue.brown_blood(lam),
+        ]
+    return np.array(spectra, dtype=np.float32)
 
 
 def _float32(values: NDArray[np.floating]) -> NDArray[np.float32]:

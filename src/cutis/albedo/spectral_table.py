@@ -19,7 +19,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutis.optics import ALIAGA2022, WAVELENGTHS, Tissue
-from cutis.optics.parameters import BLOOD, EPIDERMAL_BLOOD, MELANIN, THICKNESS
+from cutis.optics.parameters import (
+    BILIRUBIN,
+    BLOOD,
+    CAROTENE,
+    EPIDERMAL_BLOOD,
+    MELANIN,
+    METHAEMOGLOBIN,
+    THICKNESS,
+)
 from cutis.transport import two_layer_albedo
 
 NODES = (18, 18, 16)
@@ -56,6 +64,16 @@ def axis_ranges(tissue: Tissue) -> tuple[NDArray[np.float64], NDArray[np.float64
     blood = np.array([BLOOD.low, BLOOD.high, BLOOD.low, BLOOD.high])
     epidermis = tissue.epidermis_absorption(melanin, share, WAVELENGTHS)
     dermis = tissue.dermis_absorption(blood, share, WAVELENGTHS)
+    if tissue.rare_chromophores:
+        yellow, orange, met = BILIRUBIN.high, CAROTENE.high, METHAEMOGLOBIN.high
+        most = tissue.epidermis_absorption(melanin, share, WAVELENGTHS, orange)
+        epidermis = np.concatenate([epidermis, most])
+        all_met = [
+            tissue.dermis_absorption(blood, share, WAVELENGTHS, *added, met)
+            for added in ((0.0, 0.0), (yellow, orange))
+        ]
+        most = tissue.dermis_absorption(blood, share, WAVELENGTHS, yellow, orange)
+        dermis = np.concatenate([dermis, most, *all_met])
     if tissue.epidermal_blood:
         epidermis += np.array([[0.0], [EPIDERMAL_BLOOD.high]]).repeat(2, 0) * dermis.max(0)
     ones = np.ones(len(WAVELENGTHS))
@@ -124,6 +142,11 @@ def load(file: str | IO[bytes]) -> SpectralTable:
         return _finish(tissue, stored["nodes"].astype(np.float64))
 
 
+def table_file(tissue: Tissue) -> str:
+    """The name that the table of a tissue ships under."""
+    return f"{tissue.name}{'-rare' if tissue.rare_chromophores else ''}.npz"
+
+
 def spectral_table(tissue: Tissue = ALIAGA2022) -> SpectralTable:
     """The table of `tissue`: the one that ships where there is one, else built now (seconds)."""
     return _spectral_table(tissue)
@@ -131,7 +154,7 @@ def spectral_table(tissue: Tissue = ALIAGA2022) -> SpectralTable:
 
 @lru_cache(maxsize=4)
 def _spectral_table(tissue: Tissue) -> SpectralTable:
-    shipped = resources.files("cutis.data").joinpath("albedo", f"{tissue.name}.npz")
+    shipped = resources.files("cutis.data").joinpath("albedo", table_file(tissue))
     if shipped.is_file():
         with shipped.open("rb") as file:
             table = load(file)

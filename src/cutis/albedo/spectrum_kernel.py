@@ -31,10 +31,15 @@ def _locate(
     for i in range(BLOCK):
         pigment = x[3, i] * eumelanin + (ONE - x[3, i]) * pheomelanin
         blood = x[4, i] * oxygenated + (ONE - x[4, i]) * deoxygenated
+        if len(slots) == 8:
+            blood += x[7, i] * (spectra[9, b] - blood)
         epidermis = x[0, i] * pigment + (ONE - x[0, i]) * bare
-        if len(slots) > 5:
-            epidermis += x[5, i] * (blood - bare)
         dermis = x[1, i] * blood + (ONE - x[1, i]) * baseline
+        if len(slots) == 6:
+            epidermis += x[5, i] * (blood - bare)
+        if len(slots) == 8:
+            epidermis += x[6, i] * spectra[7, b]
+            dermis += x[5, i] * spectra[6, b] + x[6, i] * spectra[8, b]
         at[0, i], f = place_in_cells(np.sqrt(np.sqrt(epidermis)), low_e, scale_e, cells_e)
         at[1, i], at[2, i], at[3, i], at[4, i] = cubic_weights(f)
         at[5, i], f = place_in_cells(np.sqrt(np.sqrt(dermis)), low_d, scale_d, cells_d)
@@ -43,7 +48,7 @@ def _locate(
 
 @njit(fastmath=True, cache=True)
 def _load(skins: Any, slots: Any, thickness: Any, x: Any, at: Any) -> None:
-    """Parameters (n, 5 or 6) into the rows of x (6, BLOCK); thickness cell and weights into at."""
+    """Parameters (n, p) into the rows of x (8, BLOCK); thickness cell and weights into at."""
     low, scale, count = thickness
     for i in range(len(skins)):
         for p in range(len(slots)):
@@ -73,7 +78,7 @@ def reflectance_kernel(
     cells = upper.shape[1] - 3, lower.shape[1] - 3
     thickness = low[0, 2], scale[0, 2], upper.shape[2]
     for block in prange((n + BLOCK - 1) // BLOCK):
-        x = np.ones((6, BLOCK), dtype=np.float32)
+        x = np.ones((8, BLOCK), dtype=np.float32)
         at = np.empty((10, BLOCK), dtype=np.float32)
         at_t = np.empty((5, BLOCK), dtype=np.float32)
         part = skins[block * BLOCK : min(n, (block + 1) * BLOCK)]
@@ -94,7 +99,7 @@ def rgb_kernel(
     cells = upper.shape[1] - 3, lower.shape[1] - 3
     thickness = low[0, 2], scale[0, 2], upper.shape[2]
     for block in prange((n + BLOCK - 1) // BLOCK):
-        x = np.ones((6, BLOCK), dtype=np.float32)
+        x = np.ones((8, BLOCK), dtype=np.float32)
         at = np.empty((10, BLOCK), dtype=np.float32)
         at_t = np.empty((5, BLOCK), dtype=np.float32)
         part = skins[block * BLOCK : min(n, (block + 1) * BLOCK)]

@@ -1,10 +1,12 @@
 """Compiled evaluation of a spectral table: parameters → RGB and its gradients, node by node.
 
 Kernels run over texels on all cores, in float32. Parameters (n, 5) are in their units and order;
-a sixth, where there is one, is the blood of the epidermis. `slots` is a tuple with an entry for
-each parameter: its length is their number, and unlike that of an array the compiler knows it.
-`spectra` (6, bands) holds μa of eumelanin, pheomelanin, bare epidermis, deoxygenated blood,
-oxygenated blood and bare dermis; `low`, `scale` (bands, 3) turn μa_e^¼, μa_d^¼ and log t into
+a sixth, where there are six, is the blood of the epidermis; of eight, the last three are bilirubin,
+β-carotene and methaemoglobin. `slots` is a tuple with an entry for each parameter: its length is
+their number, and unlike that of an array the compiler knows it. `spectra` (6, bands) holds μa of
+eumelanin, pheomelanin, bare epidermis, deoxygenated blood, oxygenated blood and bare dermis; (10,
+bands) also bilirubin in the dermis, β-carotene in the epidermis and in the dermis, per g/L, and
+blood of methaemoglobin; `low`, `scale` (bands, 3) turn μa_e^¼, μa_d^¼ and log t into
 cells. Tests hold the result against the exact solver.
 """
 
@@ -94,10 +96,46 @@ def mixtures(x: Any, slots: Any, spectra: Any, b: Any) -> Any:
     """μa of melanin, of blood, of epidermis and of dermis at band b, cm⁻¹."""
     pigment = x[3] * spectra[0, b] + (ONE - x[3]) * spectra[1, b]
     blood = x[4] * spectra[4, b] + (ONE - x[4]) * spectra[3, b]
+    if len(slots) == 8:
+        blood += x[7] * (spectra[9, b] - blood)
     epidermis = x[0] * pigment + (ONE - x[0]) * spectra[2, b]
-    if len(slots) > 5:
+    dermis = x[1] * blood + (ONE - x[1]) * spectra[5, b]
+    if len(slots) == 6:
         epidermis += x[5] * (blood - spectra[2, b])
-    return pigment, blood, epidermis, x[1] * blood + (ONE - x[1]) * spectra[5, b]
+    if len(slots) == 8:
+        epidermis += x[6] * spectra[7, b]
+        dermis += x[5] * spectra[6, b] + x[6] * spectra[8, b]
+    return pigment, blood, epidermis, dermis
+
+
+@njit(fastmath=True)  # not inlined: tuples of three lengths, of which types allow but one
+def parameter_slopes(
+    x: Any, slots: Any, spectra: Any, b: Any, pigment: Any, blood: Any, by_e: Any, by_d: Any,
+    by_t: Any
+) -> Any:  # fmt: skip
+    """Slopes by each parameter from those by μa of epidermis and dermis and by thickness."""
+    oxygen = spectra[4, b] - spectra[3, b]
+    by_melanin = by_e * (pigment - spectra[2, b])
+    by_blood = by_d * (blood - spectra[5, b])
+    by_eumelanin = by_e * x[0] * (spectra[0, b] - spectra[1, b])
+    by_oxygen = by_d * x[1] * oxygen
+    if len(slots) == 6:
+        by_oxygen += by_e * x[5] * oxygen
+        by_red = by_e * (blood - spectra[2, b])
+        return by_melanin, by_blood, by_t, by_eumelanin, by_oxygen, by_red
+    if len(slots) == 8:
+        red = x[4] * spectra[4, b] + (ONE - x[4]) * spectra[3, b]
+        return (
+            by_melanin,
+            by_blood,
+            by_t,
+            by_eumelanin,
+            by_oxygen * (ONE - x[7]),
+            by_d * spectra[6, b],
+            by_e * spectra[7, b] + by_d * spectra[8, b],
+            by_d * x[1] * (spectra[9, b] - red),
+        )
+    return by_melanin, by_blood, by_t, by_eumelanin, by_oxygen
 
 
 @njit(fastmath=True, cache=True)
@@ -122,21 +160,12 @@ def rgb_and_slope(
         by_e = _sum(c, i, j, k, weight_slopes(fe), wd, wt) * scale[b, 0] * quarter * re / epidermis
         by_d = _sum(c, i, j, k, we, weight_slopes(fd), wt) * scale[b, 1] * quarter * rd / dermis
         by_t = _sum(c, i, j, k, we, wd, dwt) * scale[b, 2] / x[2]
-        partials = (
-            by_e * (pigment - spectra[2, b]),
-            by_d * (blood - spectra[5, b]),
-            by_t,
-            by_e * x[0] * (spectra[0, b] - spectra[1, b]),
-            by_d * x[1] * (spectra[4, b] - spectra[3, b]),
-        )
+        partials = parameter_slopes(x, slots, spectra, b, pigment, blood, by_e, by_d, by_t)
         for channel in range(3):
             weight = to_rgb[b, channel]
             rgb[channel] += albedo * weight
-            for p in range(5):
+            for p in range(len(slots)):
                 slope[channel, p] += partials[p] * weight
-            if len(slots) > 5:
-                slope[channel, 4] += by_e * x[5] * (spectra[4, b] - spectra[3, b]) * weight
-                slope[channel, 5] += by_e * (blood - spectra[2, b]) * weight
 
 
 @njit(parallel=True, fastmath=True, cache=True)
@@ -151,7 +180,7 @@ def rgb_gradient_kernel(
     out: Any,
     slope: Any,
 ) -> None:
-    """`rgb_and_slope` of every skin: fills out (n, 3) and slope (n, 3, 5 or 6)."""
+    """`rgb_and_slope` of every skin: fills out (n, 3) and slope (n, 3, p)."""
     n = skins.shape[0]
     for block in prange((n + BLOCK - 1) // BLOCK):
         for row in range(block * BLOCK, min(n, (block + 1) * BLOCK)):

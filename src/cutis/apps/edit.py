@@ -16,6 +16,9 @@ def edit(
     thickness: options.ThicknessChange = None,
     eumelanin: options.EumelaninChange = None,
     oxygenation: options.OxygenationChange = None,
+    bilirubin: options.BilirubinChange = None,
+    carotene: options.CaroteneChange = None,
+    methaemoglobin: options.MethaemoglobinChange = None,
     preset: options.Presets = None,
     amount: options.Amount = 1.0,
     mask: options.Mask = None,
@@ -44,7 +47,17 @@ def edit(
     from cutis.textures.udim import TOKEN, tile_of, udim_tiles
 
     by_tensor = None if method is None else options.method_name(method)
-    edits = options.edits(preset, melanin, blood, thickness, eumelanin, oxygenation)
+    flags = {
+        "melanin": melanin,
+        "blood": blood,
+        "thickness": thickness,
+        "eumelanin": eumelanin,
+        "oxygenation": oxygenation,
+        "bilirubin": bilirubin,
+        "carotene": carotene,
+        "methaemoglobin": methaemoglobin,
+    }
+    edits = options.edits(preset, flags)
     format_of(output)  # fails now rather than after the work
     space = None if output_colorspace is None else colour_space(output_colorspace, ocio)
     job = Job(maps, output, tuple(edits), amount, mask, source, by_tensor, space, save_maps)

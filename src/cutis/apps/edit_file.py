@@ -51,6 +51,7 @@ def edit_file(job: Job, progress: "Progress") -> Edited:
     import numpy as np
 
     from cutis.maps import MapsFile, blank, find_source, maps_writer, open_source, source_note
+    from cutis.optics import RARE_NAMES
     from cutis.textures import MaskFile, texture_writer
 
     with contextlib.ExitStack() as stack:
@@ -93,12 +94,13 @@ def edit_file(job: Job, progress: "Progress") -> Edited:
         names = edited.edits
         if job.save_maps is not None:
             touched = {edit.parameter for edit in job.edits} | set(maps.changed)
+            rare = [name for name in RARE_NAMES if name in touched | set(maps.rare)]
             like = replace(
                 blank(maps.calibration, model, source_note(texture)), edits=names,
                 clamped=(*maps.clamped, *told),
             )  # fmt: skip
             put = stack.enter_context(
-                maps_writer(job.save_maps, like, shape, "float", sorted(touched))
+                maps_writer(job.save_maps, like, shape, "float", sorted(touched), rare)
             )
             for rows in maps.bands():
                 where = None if mask is None else mask.rows(rows)

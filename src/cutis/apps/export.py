@@ -27,6 +27,9 @@ def export(
     thickness: options.ThicknessChange = None,
     eumelanin: options.EumelaninChange = None,
     oxygenation: options.OxygenationChange = None,
+    bilirubin: options.BilirubinChange = None,
+    carotene: options.CaroteneChange = None,
+    methaemoglobin: options.MethaemoglobinChange = None,
     preset: options.Presets = None,
     amount: options.Amount = 1.0,
     size: Annotated[int, typer.Option(help="Nodes along a side of a LUT, at most 129.")] = 65,
@@ -58,7 +61,17 @@ def export(
     from cutis.apps.console import out
     from cutis.errors import CutisError
 
-    edits = options.edits(preset, melanin, blood, thickness, eumelanin, oxygenation)
+    flags = {
+        "melanin": melanin,
+        "blood": blood,
+        "thickness": thickness,
+        "eumelanin": eumelanin,
+        "oxygenation": oxygenation,
+        "bilirubin": bilirubin,
+        "carotene": carotene,
+        "methaemoglobin": methaemoglobin,
+    }
+    edits = options.edits(preset, flags)
     if output.suffix.lower() in NETWORKS:
         if edits or maps is not None:
             raise CutisError(f"{output} is for networks; edits are written as .cube or .clf")

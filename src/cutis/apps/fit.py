@@ -27,9 +27,7 @@ def fit(
             "the specular part in (SCI, 8°/diffuse), 0 where it is left out.",
         ),
     ] = 0.0,
-    tissue: Annotated[
-        str, typer.Option("--tissue", help="aliaga2022, or measured2026, fitted to measured skin.")
-    ] = "aliaga2022",
+    tissue: options.TissueName = "measured2026",
     shift: Annotated[
         float,
         typer.Option(
@@ -55,6 +53,16 @@ def fit(
     thickness: options.Thickness = None,
     eumelanin: options.Eumelanin = None,
     oxygenation: options.Oxygenation = None,
+    bilirubin: options.Bilirubin = None,
+    carotene: options.Carotene = None,
+    methaemoglobin: options.Methaemoglobin = None,
+    free: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--free",
+            help="Find this too: bilirubin, carotene or methaemoglobin, 0 else; may be repeated.",
+        ),
+    ] = None,
     correlations: Annotated[
         bool, typer.Option("--correlations", help="Columns of correlations between parameters.")
     ] = False,
@@ -68,14 +76,23 @@ def fit(
     Example: cutis fit spectra.csv --specular 0.028 --range 400,700 -o skins.csv
     """
     from cutis.apps.fit_file import Request, fit_cube, fit_table
-    from cutis.optics import NAMES
 
-    flags = dict(zip(NAMES, (melanin, blood, thickness, eumelanin, oxygenation), strict=True))
+    flags = {
+        "melanin": melanin,
+        "blood": blood,
+        "thickness": thickness,
+        "eumelanin": eumelanin,
+        "oxygenation": oxygenation,
+        "bilirubin": bilirubin,
+        "carotene": carotene,
+        "methaemoglobin": methaemoglobin,
+    }
     held = {name: value for name, value in flags.items() if value is not None}
     low, high = _range(wavelength_range)
     request = Request(
-        spectra, output, specular, low, high, scale, noise, held, quiet, tissue, shift
-    )
+        spectra, output, specular, low, high, scale, noise, held, quiet, tissue, shift,
+        tuple(free or ()),
+    )  # fmt: skip
     if spectra.suffix.lower() in TABLES:
         fit_table(request, correlations)
     else:

@@ -15,13 +15,11 @@ from cutis.apps.spectra_file import read_spectra
 from cutis.errors import CutisError
 from cutis.inverse import SpectralFit, SpectralFitter
 from cutis.inverse.models import EXACT
-from cutis.optics import ALIAGA2022, MEASURED2026, NAMES, PARAMETERS, WAVELENGTHS, Parameter
+from cutis.optics import ALIAGA2022, MEASURED2026, WAVELENGTHS, Parameter, tissue_named
 from cutis.textures import channel_writer, open_cube, replacing
 from cutis.textures.problem import problem
 from cutis.textures.reflectance import HIGHEST, fraction_scale, without_impossible
 
-TISSUES = {tissue.name: tissue for tissue in (ALIAGA2022, MEASURED2026)}
-"""Tissues that can be asked for: those with the five parameters of skin maps."""
 STEP = 2000
 """Spectra of a table between two looks at the progress bar."""
 
@@ -39,8 +37,9 @@ class Request:
     noise: float | None = None
     held: Mapping[str, float] | None = None
     quiet: bool = False
-    tissue: str = ALIAGA2022.name
+    tissue: str = MEASURED2026.name
     shift: float = 0.0
+    free: tuple[str, ...] = ()
 
     def say(self, note: str) -> None:
         """A note to whoever watches; on stderr, since results may go to stdout."""
@@ -66,16 +65,16 @@ class Request:
 
     def fitter(self, wavelengths: NDArray[np.float64]) -> SpectralFitter:
         """A fitter of what is asked for at `wavelengths`."""
-        if self.tissue not in TISSUES:
-            raise CutisError(f"--tissue is {' or '.join(TISSUES)}, not {self.tissue!r}")
+        tissue = tissue_named(self.tissue)
         try:
             return SpectralFitter(
                 wavelengths,
-                TISSUES[self.tissue],
+                tissue,
                 specular=self.specular,
                 shift=self.shift,
                 held=self.held,
                 noise=self.noise,
+                free=self.free,
             )
         except CutisError as error:
             raise problem(self.spectra, str(error)) from error
@@ -159,10 +158,10 @@ def fit_cube(request: Request, wavelengths: Path | None = None) -> None:
             request.say(note)
         fitter = request.fitter(cube.wavelengths[inside])
         names = [p.name for p in fitter.parameters]
-        channels = (*NAMES, "mask", *(f"{name}.sigma" for name in names), "rmse")
+        channels = (*names, "mask", *(f"{name}.sigma" for name in names), "rmse")
         header: dict[str, str | float | int] = {
             f"cutis:{p.name}": f"{p.meaning} [{p.unit}], {p.low:g} to {p.high:g}"
-            for p in PARAMETERS
+            for p in fitter.parameters
         }
         tissue = request.tissue
         header["cutis:model"] = EXACT if tissue == ALIAGA2022.name else tissue

@@ -11,6 +11,8 @@ def info(maps: Annotated[Path, typer.Argument(help="Maps, NAME.skin.exr.")]) -> 
 
     Example: cutis info out/face.skin.exr
     """
+    import numpy as np
+
     from cutis.apps.console import out, print_statistics
     from cutis.maps import MapsFile
     from cutis.maps.statistics import MapStatistics
@@ -18,10 +20,14 @@ def info(maps: Annotated[Path, typer.Argument(help="Maps, NAME.skin.exr.")]) -> 
 
     with MapsFile(maps) as file:
         found, inside = MapStatistics(), 0
+        ends = {name: (np.inf, -np.inf) for name in file.rare}
         for rows in file.bands():
             skin = file.rows(rows)
             found.add(skin.coordinates(), skin.mask > 0)
             inside += int((skin.mask > 0).sum())
+            for name, (low, high) in ends.items():
+                values = skin.map(name)[skin.mask > 0]
+                ends[name] = (values.min(initial=low), values.max(initial=high))
         if not inside:
             raise file.no_mask()
     height, width = file.shape
@@ -39,3 +45,6 @@ def info(maps: Annotated[Path, typer.Argument(help="Maps, NAME.skin.exr.")]) -> 
         (name, parameter(name).unit, low, median, high)
         for name, (low, median, high) in found.percentiles().items()
     )
+    for name, (low, high) in ends.items():
+        unit = parameter(name).unit.replace("1", "").strip()
+        out.print(f"{name}: {low:.4g} to {high:.4g} {unit}".rstrip())

@@ -1,7 +1,7 @@
 """Flags that mean the same in every command."""
 
 import contextlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -50,6 +50,20 @@ Eumelanin = Annotated[float | None, typer.Option("--eumelanin", help="Eumelanin 
 Oxygenation = Annotated[
     float | None, typer.Option("--oxygenation", help="Oxygenated share of haemoglobin.")
 ]
+Bilirubin = Annotated[
+    float | None, typer.Option("--bilirubin", help="Bilirubin in the dermis, 0-0.2 g/L.")
+]
+Carotene = Annotated[
+    float | None, typer.Option("--carotene", help="β-carotene in the epidermis, 0-0.05 g/L.")
+]
+Methaemoglobin = Annotated[
+    float | None,
+    typer.Option("--methaemoglobin", help="Share of haemoglobin that is methaemoglobin, 0-0.7."),
+]
+TissueName = Annotated[
+    str,
+    typer.Option("--tissue", help="measured2026, fitted to measured skin, or aliaga2022."),
+]
 Presets = Annotated[
     list[str] | None,
     typer.Option("--preset", help="A named edit, before the others; may be repeated."),
@@ -95,27 +109,18 @@ BloodChange = Annotated[str | None, _change("blood", "Blood volume fraction")]
 ThicknessChange = Annotated[str | None, _change("thickness", "Epidermal thickness in µm")]
 EumelaninChange = Annotated[str | None, _change("eumelanin", "Eumelanin share of melanin")]
 OxygenationChange = Annotated[str | None, _change("oxygenation", "Oxygenated share of haemoglobin")]
+BilirubinChange = Annotated[str | None, _change("bilirubin", "Bilirubin in the dermis in g/L")]
+CaroteneChange = Annotated[str | None, _change("carotene", "β-carotene in the epidermis in g/L")]
+MethaemoglobinChange = Annotated[
+    str | None, _change("methaemoglobin", "Methaemoglobin share of haemoglobin")
+]
 
 
-def edits(
-    presets: Sequence[str] | None,
-    melanin: str | None,
-    blood: str | None,
-    thickness: str | None,
-    eumelanin: str | None,
-    oxygenation: str | None,
-) -> "list[Edit]":
-    """The edits of --preset, in the order given, then those of the five parameter flags."""
+def edits(presets: Sequence[str] | None, flags: Mapping[str, str | None]) -> "list[Edit]":
+    """The edits of --preset, in the order given, then those of parameter flags by name."""
     from cutis.maps import parse_edit
     from cutis.maps.presets import preset as named
 
-    flags = {
-        "melanin": melanin,
-        "blood": blood,
-        "thickness": thickness,
-        "eumelanin": eumelanin,
-        "oxygenation": oxygenation,
-    }
     found = [change for name in presets or [] for change in named(name)]
     found += [parse_edit(name, text) for name, text in flags.items() if text is not None]
     return found

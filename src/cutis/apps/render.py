@@ -155,9 +155,16 @@ def render(
         centre=(0.5, 0.5) if head is None else head.centre,
         roughness=0.5 if roughness is None else roughness,
     )  # fmt: skip
+    flags = {
+        "melanin": melanin,
+        "blood": blood,
+        "thickness": thickness,
+        "eumelanin": eumelanin,
+        "oxygenation": oxygenation,
+    }
     order = Order(
         skin, output, scene,
-        edits=tuple(options.edits(preset, melanin, blood, thickness, eumelanin, oxygenation)),
+        edits=tuple(options.edits(preset, flags)),
         amount=amount, paint=mask, source=source, model_only=model_only, colorspace=colorspace,
         ocio=ocio, radius=radius, frames=sequence, again=again,
     )  # fmt: skip

@@ -19,12 +19,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutis.albedo.colour_table import colour_table
+from cutis.albedo.rare import rare_ratio
 from cutis.errors import CutisError
 from cutis.inverse.device import check_device, torch_network
 from cutis.inverse.lookup import SHAPES, lookup_tensor
 from cutis.inverse.network import Autoencoder, Perceptron, load_weights
 from cutis.inverse.prior import SkinPrior, load_prior
-from cutis.optics import ALIAGA2022, MEASURED2026, Tissue
+from cutis.optics import ALIAGA2022, MEASURED2026, PARAMETERS, Tissue
 
 EXACT, MEASURED = "aliaga2022-exact", "measured2026"
 DEFAULT = MEASURED
@@ -61,8 +62,16 @@ class Model:
         return _in_bands(self.to_skins, rgb, 5)
 
     def decode(self, parameters: ArrayLike) -> NDArray[np.float32]:
-        """(..., 5) parameters in their units → (..., 3) linear sRGB under D65."""
-        return _in_bands(self.to_rgb, parameters, 3)
+        """(..., 5) parameters in their units → (..., 3) linear sRGB under D65.
+
+        Of (..., 8), the last three are rare chromophores (`optics.RARE`): their colour is the
+        model's, times what they change in the exact albedo space of its tissue.
+        """
+        skins = np.asarray(parameters, dtype=np.float32)
+        colours = _in_bands(self.to_rgb, skins[..., : len(PARAMETERS)], 3)
+        if skins.shape[-1] > len(PARAMETERS):
+            colours *= _in_bands(lambda some: rare_ratio(self.tissue, some), skins, 3)
+        return colours
 
     def trust(self, rgb: ArrayLike) -> NDArray[np.float32] | None:
         """(..., 3) calibrated linear sRGB → (..., 6): σ of the five parameters, and confidence.
@@ -163,9 +172,7 @@ def _baked(name: str) -> Model:
         return Model(name, inverse.skins, decode, tissue)
     trust = table(f"{name}-trust")
     before = tuple(float(s) for s in shipped_prior().prior_sigma)
-    return Model(
-        name, inverse.skins, decode, tissue, lambda rgb: look_up_trust(trust, rgb), before
-    )
+    return Model(name, inverse.skins, decode, tissue, lambda rgb: look_up_trust(trust, rgb), before)
 
 
 def shipped_prior() -> SkinPrior:

@@ -16,7 +16,7 @@ to wavelength in waves: σ is then a scale of how far parameters are from what a
 model would say, no more.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,7 +25,15 @@ from numpy.typing import ArrayLike, NDArray
 from cutis.albedo import AlbedoSpace, albedo_space
 from cutis.albedo.sampled import SampledSpace
 from cutis.errors import CutisError
-from cutis.optics import ALIAGA2022, NAMES, WAVELENGTHS, Parameter, Tissue
+from cutis.optics import (
+    ALIAGA2022,
+    NAMES,
+    RARE_NAMES,
+    WAVELENGTHS,
+    Parameter,
+    Tissue,
+    with_rare_chromophores,
+)
 
 LIBRARY = 4096
 """Skins among which starts are looked up."""
@@ -76,6 +84,7 @@ class SpectralFitter:
         shift: float = 0.0,
         held: Mapping[str, float] | None = None,
         noise: float | None = None,
+        free: Sequence[str] = (),
     ) -> None:
         """Arguments and errors are those of `fit_spectra`."""
         if not 0 <= specular < 0.2:
@@ -85,10 +94,10 @@ class SpectralFitter:
         if noise is not None and not 0 < noise < 1:
             raise CutisError(f"noise = {noise:g}: it must lie between 0 and 1")
         self.specular, self.noise = float(specular), noise
+        tissue, self._held, self._told = _with_rare(tissue, dict(held or {}), free)
         self.space: AlbedoSpace = albedo_space(tissue)
         self.sampled = SampledSpace(self.space, _shifted(wavelengths, shift))
-        self.free = _free(tissue, held or {})
-        self._held = {k: v for k, v in (held or {}).items()}
+        self.free = _free(tissue, self._held)
         if not self.free.any():
             raise CutisError("every parameter is held; leave one free to fit")
         if len(np.unique(self.sampled.wavelengths)) < self.free.sum():
@@ -101,6 +110,11 @@ class SpectralFitter:
     @property
     def parameters(self) -> tuple[Parameter, ...]:
         """What is fitted or held, in the order of results."""
+        return tuple(self._parameters[i] for i in self._told)
+
+    @property
+    def _parameters(self) -> tuple[Parameter, ...]:
+        """The same with rare chromophores that nobody asked for, which are held at 0."""
         return self.space.tissue.parameters
 
     def fit(self, spectra: ArrayLike, weights: ArrayLike | None = None) -> SpectralFit:
@@ -113,9 +127,9 @@ class SpectralFitter:
         if measured.ndim != 2 or measured.shape[1] != bands:
             raise CutisError(f"spectra must be (n, {bands}), not of shape {measured.shape}")
         weight = np.broadcast_to(1.0 if weights is None else np.asarray(weights), measured.shape)
-        count, size = len(measured), len(self.parameters)
+        count, size = len(measured), len(self._parameters)
         found = SpectralFit(
-            self.parameters,
+            self._parameters,
             np.empty((count, size)),
             np.empty((count, size, size)),
             np.empty(count),
@@ -123,11 +137,17 @@ class SpectralFitter:
         for start in range(0, count, BATCH):
             part = slice(start, start + BATCH)
             self._fit(measured[part], weight[part], found, part)
-        return found
+        told = list(self._told)
+        if len(told) == size:
+            return found
+        covariance = found.covariance[:, told][:, :, told]
+        return SpectralFit(self.parameters, found.values[:, told], covariance, found.rmse)
 
     def reflectance(self, values: ArrayLike) -> NDArray[np.float64]:
         """(n, p) skins → (n, wavelengths) reflectance as the instrument sees it."""
-        albedo = self.sampled.reflectance(values)
+        skins = np.zeros((len(np.asarray(values)), len(self._parameters)))
+        skins[:, list(self._told)] = values
+        albedo = self.sampled.reflectance(skins)
         return np.asarray(self.specular + (1 - self.specular) * albedo, dtype=np.float64)
 
     def _fit(
@@ -157,9 +177,9 @@ class SpectralFitter:
         places = list(self.space.places)
         u = best[:, places]
         values = np.stack(
-            [p.from_coordinate(u[:, i]) for i, p in enumerate(self.parameters)], axis=-1
+            [p.from_coordinate(u[:, i]) for i, p in enumerate(self._parameters)], axis=-1
         )
-        for i, p in enumerate(self.parameters):
+        for i, p in enumerate(self._parameters):
             if p.name in self._held:
                 values[:, i] = self._held[p.name]
         unit = 1 - self.specular
@@ -193,11 +213,11 @@ class SpectralFitter:
         inverse = np.linalg.inv(inner)
         slope = np.empty((len(u), len(free)))
         for column, i in enumerate(free):
-            p = self.parameters[i]
+            p = self._parameters[i]
             low, high = p.low ** (1 / p.root), p.high ** (1 / p.root)
             slope[:, column] = p.root * (low + u[:, i] * (high - low)) ** (p.root - 1)
             slope[:, column] *= high - low
-        whole = np.zeros((len(u), len(self.parameters), len(self.parameters)))
+        whole = np.zeros((len(u), len(self._parameters), len(self._parameters)))
         whole[:, free[:, None], free] = inverse * slope[:, :, None] * slope[:, None, :]
         return whole
 
@@ -220,10 +240,10 @@ class SpectralFitter:
         every, places = self.space.every_parameter, list(self.space.places)
         u = qmc.Halton(len(places), scramble=True, rng=0).random(LIBRARY)
         held = {**dict(self.space.tissue.fixed), **self._held}
-        for i, p in enumerate(self.parameters):
+        for i, p in enumerate(self._parameters):
             if p.name in held:
                 u[:, i] = p.to_coordinate(held[p.name])
-        free = [p.from_coordinate(u[:, i]) for i, p in enumerate(self.parameters)]
+        free = [p.from_coordinate(u[:, i]) for i, p in enumerate(self._parameters)]
         spectra = self.sampled.reflectance(np.stack(free, axis=-1))
         library = np.empty((LIBRARY, len(every)))
         for i, p in enumerate(every):
@@ -247,17 +267,20 @@ def fit_spectra(
     shift: float = 0.0,
     held: Mapping[str, float] | None = None,
     noise: float | None = None,
+    free: Sequence[str] = (),
 ) -> SpectralFit:
     """(n, w) reflectance, 0 to 1, at wavelengths (w,) in 380–780 nm → skins with covariance.
 
     NaN marks what was not measured. `specular` is ρ, 0.028 for spectra of n = 1.4 with the surface
     included; `shift` how many nm the instrument's wavelengths are too short; `held`
     gives parameters, by name, that are known; `noise` the standard deviation of a reflectance, by
-    default taken from the residual. Raises CutisError for wavelengths outside or
-    fewer than free parameters, and for values held outside their range.
+    default taken from the residual. `free` names rare chromophores (`optics.RARE`) to be found too:
+    of a tissue that has none, those neither in `free` nor in `held` are 0 and not in the result.
+    Raises CutisError for wavelengths outside or fewer than free parameters, for values held outside
+    their range, and names that are not rare chromophores.
     """
     fitter = SpectralFitter(
-        wavelengths, tissue, specular=specular, shift=shift, held=held, noise=noise
+        wavelengths, tissue, specular=specular, shift=shift, held=held, noise=noise, free=free
     )
     return fitter.fit(reflectance)
 
@@ -268,6 +291,27 @@ def _shifted(wavelengths: ArrayLike, shift: float) -> NDArray[np.float64]:
     first, last = WAVELENGTHS[0], WAVELENGTHS[-1]
     inside = (stated >= first) & (stated <= last)
     return np.where(inside, np.clip(stated + shift, first, last), stated)
+
+
+def _with_rare(
+    tissue: Tissue, held: dict[str, float], free: Sequence[str]
+) -> tuple[Tissue, dict[str, float], tuple[int, ...]]:
+    """The tissue with the rare chromophores asked for, all that is held, places of results."""
+    for name in free:
+        if name not in RARE_NAMES:
+            listed = ", ".join(RARE_NAMES)
+            raise CutisError(f"{name} cannot be freed; what can is {listed}, the five are free")
+        if name in held:
+            raise CutisError(f"{name} is both free and held at {held[name]:g}; choose one")
+    asked = {*free, *held} & {*RARE_NAMES}
+    if asked and not tissue.rare_chromophores:
+        tissue = with_rare_chromophores(tissue)
+        absent = [name for name in RARE_NAMES if name not in asked]
+        held = {**held, **dict.fromkeys(absent, 0.0)}
+    else:
+        absent = []
+    told = (i for i, p in enumerate(tissue.parameters) if p.name not in absent)
+    return tissue, held, tuple(told)
 
 
 def _free(tissue: Tissue, held: Mapping[str, float]) -> NDArray[np.bool_]:

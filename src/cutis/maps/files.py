@@ -24,7 +24,7 @@ from cutis.errors import CutisError
 from cutis.inverse.calibration import Calibration
 from cutis.inverse.models import stored_name
 from cutis.maps.skin_maps import SkinMaps
-from cutis.optics import NAMES, PARAMETERS, Parameter
+from cutis.optics import NAMES, PARAMETERS, RARE, RARE_NAMES, Parameter
 from cutis.textures.closing import Closing
 
 PREFIX = "cutis:"
@@ -42,7 +42,7 @@ def save_maps(
     changed = () if before is None else tuple(
         name for name in NAMES if not np.array_equal(getattr(before, name), getattr(skin, name))
     )  # fmt: skip
-    with maps_writer(path, skin, skin.shape, dtype, changed) as write:
+    with maps_writer(path, skin, skin.shape, dtype, changed, skin.rare) as write:
         for rows in textures.bands(skin.shape):
             write(skin.rows(rows))
 
@@ -54,13 +54,17 @@ def maps_writer(
     shape: tuple[int, int],
     dtype: Literal["float", "half"] = "float",
     changed: Sequence[str] = (),
+    rare: Sequence[str] = (),
 ) -> Iterator[Callable[[SkinMaps], None]]:
     """What `save_maps` does, some rows at a time: yields a function that takes the next rows.
 
-    The header is that of `like`; `changed` names the maps that edits may have changed.
+    The header is that of `like`; `changed` names the maps that edits may have changed, `rare` the
+    rare chromophores that have a map.
     """
+    known = (*PARAMETERS, *(p for p in RARE if p.name in rare))
+    maps = (*(p.name for p in known), "mask")
     header: dict[str, str | float | int] = {
-        f"{PREFIX}{p.name}": f"{p.meaning} [{p.unit}], {p.low:g} to {p.high:g}" for p in PARAMETERS
+        f"{PREFIX}{p.name}": f"{p.meaning} [{p.unit}], {p.low:g} to {p.high:g}" for p in known
     }
     header[f"{PREFIX}model"] = like.model
     header[f"{PREFIX}calibration"] = json.dumps(asdict(like.calibration))
@@ -70,13 +74,15 @@ def maps_writer(
         header[f"{PREFIX}{key}"] = _from_folder(value, path) if key in PATHS else value
     if dtype not in ("float", "half"):
         raise CutisError(f"maps are stored as float or half, not {dtype}")
-    names = (*NAMES, "mask", *(ORIGINAL + name for name in changed))
+    if like.edits:  # without a map before edits, a rare chromophore was not there
+        changed = tuple(dict.fromkeys((*changed, *rare)))
+    names = (*maps, *(ORIGINAL + name for name in changed))
     with textures.channel_writer(path, names, shape, dtype, header) as put:
 
         def write(part: SkinMaps) -> None:
-            channels = {name: getattr(part, name) for name in (*NAMES, "mask")}
+            channels = {name: part.map(name) for name in maps}
             for name in changed:
-                channels[ORIGINAL + name] = getattr(part.original or part, name)
+                channels[ORIGINAL + name] = (part.original or part).map(name)
             put(channels)
 
         yield write
@@ -85,9 +91,9 @@ def maps_writer(
 class MapsFile(Closing):
     """An open file of skin maps: what its header says, and its maps some rows at a time.
 
-    `edits` and `clamped` are those of `SkinMaps`, `changed` names the maps whose values before
-    edits are stored too. Close it, or use it in a with block. Raises CutisError where channels are
-    missing, out of range, or the header is damaged.
+    `edits` and `clamped` are those of `SkinMaps`, `rare` names the rare chromophores that have a
+    map, `changed` the maps whose values before edits are stored too. Close it, or use it in a with
+    block. Raises CutisError where channels are missing, out of range, or the header is damaged.
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
@@ -112,7 +118,10 @@ class MapsFile(Closing):
                 "make one with: cutis estimate"
             )
         self.shape = self._file.shape
-        self.changed = tuple(name for name in NAMES if ORIGINAL + name in self._file.names)
+        self.rare = tuple(name for name in RARE_NAMES if name in self._file.names)
+        self.changed = tuple(
+            name for name in (*NAMES, *self.rare) if ORIGINAL + name in self._file.names
+        )
         metadata = self._file.metadata
         notes = {k[len(PREFIX) :]: str(v) for k, v in metadata.items() if k.startswith(PREFIX)}
         try:
@@ -125,7 +134,9 @@ class MapsFile(Closing):
         self.edits = tuple(edit for edit, _ in edits)
         self.clamped = tuple(clamped for _, clamped in edits)
         self.model = stored_name(notes.pop("model", "default"))
-        self.provenance = {key: value for key, value in notes.items() if key not in NAMES}
+        self.provenance = {
+            key: value for key, value in notes.items() if key not in (*NAMES, *RARE_NAMES)
+        }
         config = self.provenance.get("source_ocio")
         if config and "://" not in config:
             self.provenance["source_ocio"] = os.path.join(self.path.resolve().parent, config)
@@ -145,7 +156,9 @@ class MapsFile(Closing):
         if not (mask.min() >= 0 and mask.max() <= 1):  # NaN fails too
             raise self.no_mask()
         found: dict[str, Any] = {
-            p.name: _checked(self.path, channels[p.name], p, mask) for p in PARAMETERS
+            p.name: _checked(self.path, channels[p.name], p, mask)
+            for p in (*PARAMETERS, *RARE)
+            if p.name in (*NAMES, *self.rare)
         }
         skin = SkinMaps(
             **found, mask=mask, calibration=self.calibration, model=self.model,
@@ -155,7 +168,7 @@ class MapsFile(Closing):
             return skin
         before: dict[str, Any] = {
             p.name: _checked(self.path, channels[ORIGINAL + p.name], p, mask)
-            for p in PARAMETERS
+            for p in (*PARAMETERS, *RARE)
             if p.name in self.changed
         }
         original = replace(skin, **before)

@@ -1,4 +1,6 @@
-"""Named edits: those that the paper shows, with its amounts [aliaga2022].
+"""Named edits: those that the paper shows, with its amounts [aliaga2022], and of four conditions.
+
+The amounts of those four are of physiology; they make pictures, not diagnoses (docs/guide.md).
 
 Each preset is a tuple of `Edit`; `SkinMaps.apply` takes it.
 """
@@ -32,6 +34,15 @@ flushing: Preset = (
 """Blood +70 %, fully oxygenated."""
 vitiligo: Preset = (Edit("melanin", "set", parameter("melanin").low, where="patches"),)
 """Patches without melanin: procedural ones, or inside a painted mask."""
+jaundice: Preset = (Edit("bilirubin", "set", 0.04),)
+"""A serum of 0.2 g/L; the dermis then holds about a fifth of that (docs/decisions/0024)."""
+carotenaemia: Preset = (Edit("carotene", "set", 0.015),)
+"""Five times the β-carotene of a usual epidermis [vahlquist1982]."""
+cyanosis: Preset = (Edit("oxygenation", "multiply", 0.4),)
+"""From 0.75 to 0.3: more than 50 g/L of deoxygenated haemoglobin in the vessels
+[lundsgaard1923]."""
+methaemoglobinaemia: Preset = (Edit("methaemoglobin", "set", 0.3),)
+"""Three times what is seen at first, 15 g/L or a tenth of all haemoglobin [finch1948]."""
 
 PRESETS: dict[str, Preset] = {
     "blood-eighth": blood_eighth,
@@ -48,6 +59,10 @@ PRESETS: dict[str, Preset] = {
     "tanning": tanning,
     "flushing": flushing,
     "vitiligo": vitiligo,
+    "jaundice": jaundice,
+    "carotenaemia": carotenaemia,
+    "cyanosis": cyanosis,
+    "methaemoglobinaemia": methaemoglobinaemia,
 }
 
 

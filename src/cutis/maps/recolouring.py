@@ -17,7 +17,7 @@ from cutis.inverse.calibration import Calibration
 from cutis.inverse.models import load_model
 from cutis.maps.edits import Edit
 from cutis.maps.skin_maps import DARKEST
-from cutis.optics import NAMES
+from cutis.optics import NAMES, RARE_NAMES
 
 WHOLE, NONE = 8.0, 20.0
 """ΔE00 between a colour and the model's up to which an edit is whole, and from which there is
@@ -51,12 +51,14 @@ def recolouring(
         colours = known.apply(result)
         skins = inverse.encode(colours)
         before = inverse.decode(skins)
+        if any(edit.parameter in RARE_NAMES for edit in edits):
+            skins = np.pad(skins, ((0, 0), (0, len(RARE_NAMES))))
         share = fading(delta_e(before, np.maximum(colours, 0.0)))
         near = np.flatnonzero(share)
         edited = skins[near]
         weight = np.full(len(near), amount, dtype=np.float32)
         for edit in edits:
-            column = NAMES.index(edit.parameter)
+            column = (*NAMES, *RARE_NAMES).index(edit.parameter)
             edited[:, column] = edit(edited[:, column], weight)[0]
         changed = (edited != skins[near]).any(axis=1)
         near = near[changed]

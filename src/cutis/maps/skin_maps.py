@@ -1,7 +1,7 @@
 """Skin maps: what `estimate` returns, what people edit, what becomes albedo again."""
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Literal
@@ -15,7 +15,7 @@ from cutis.inverse.models import load_model, model_name, tissue_of
 from cutis.maps.edits import Edit
 from cutis.maps.patches import patches
 from cutis.maps.statistics import MapStatistics, coordinates
-from cutis.optics import NAMES, Tissue, parameter
+from cutis.optics import NAMES, RARE_NAMES, Tissue, parameter, with_rare_chromophores
 from cutis.textures.texture import Texture, bands
 
 Map = NDArray[np.float32]
@@ -28,6 +28,8 @@ DARKEST = np.float32(1e-4)
 class SkinMaps:
     """Five maps of what a skin is made of, float32 (H, W), in the units of `optics.PARAMETERS`.
 
+    `bilirubin`, `carotene` and `methaemoglobin` are maps of the rare chromophores (`optics.RARE`),
+    None where no edit or fit has set them: what the tissue itself holds, 0 in those maps.
     `mask` (H, W) in [0, 1] says where they hold; maps are 0 where it is 0. `calibration` was
     applied to the capture before the estimate, by the model called `model` (the name that `default`
     stands for, if that is given). `source` is the capture, linear sRGB (H, W, 3), or None when only
@@ -54,10 +56,13 @@ class SkinMaps:
     provenance: Mapping[str, str] = field(default_factory=dict)
     first_row: int = 0
     whole: tuple[int, int] | None = None
+    bilirubin: Map | None = None
+    carotene: Map | None = None
+    methaemoglobin: Map | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "model", model_name(self.model))
-        for name in (*NAMES, "mask", "source"):
+        for name in (*NAMES, *RARE_NAMES, "mask", "source"):
             values = getattr(self, name)
             if values is None:
                 continue
@@ -78,15 +83,33 @@ class SkinMaps:
         """The tissue that these skins are of: that of the model."""
         return tissue_of(self.model)
 
-    def parameters(self, rows: slice | None = None) -> Map:
-        """(H, W, 5) parameters, or those of some rows."""
+    @property
+    def rare(self) -> tuple[str, ...]:
+        """Names of the rare chromophores that have a map."""
+        return tuple(name for name in RARE_NAMES if getattr(self, name) is not None)
+
+    def parameters(self, rows: slice | None = None, names: Sequence[str] = NAMES) -> Map:
+        """(H, W, 5) parameters, or those of some rows, or others by name; 0 where there is no map.
+
+        Rare chromophores are among them where `names` says so, as NAMES + RARE_NAMES does.
+        """
         rows = slice(None) if rows is None else rows
-        return np.stack([getattr(self, name)[rows] for name in NAMES], axis=-1)
+        return np.stack([self.map(name)[rows] for name in names], axis=-1)
+
+    def map(self, name: str) -> Map:
+        """(H, W) the map called `name`, of 0 for a rare chromophore that has none."""
+        values: Map | None = getattr(self, name)
+        return np.zeros(self.shape, dtype=np.float32) if values is None else values
+
+    def _names(self) -> tuple[str, ...]:
+        """What the colours of these maps depend on."""
+        return (*NAMES, *RARE_NAMES) if self.rare else NAMES
 
     def rows(self, rows: slice) -> "SkinMaps":
         """The maps of some rows, capture and original included."""
         first = rows.indices(self.shape[0])[0]
-        parts: dict[str, Any] = {name: getattr(self, name)[rows] for name in (*NAMES, "mask")}
+        names = (*NAMES, *self.rare, "mask")
+        parts: dict[str, Any] = {name: getattr(self, name)[rows] for name in names}
         result = replace(
             self,
             **parts,
@@ -147,7 +170,7 @@ class SkinMaps:
         for edit in edits:
             procedural = where is None and edit.where == "patches"
             weight = everywhere * self._patches() if procedural else everywhere
-            edited, clamped = edit(getattr(result, edit.parameter), weight)
+            edited, clamped = edit(result.map(edit.parameter), weight)
             changes: dict[str, Any] = {edit.parameter: edited}
             result = replace(
                 result,
@@ -191,7 +214,7 @@ class SkinMaps:
         for rows in bands(self.shape):
             inside = self.mask[rows] > 0
             result[rows][inside] = self.calibration.undo(
-                model.decode(self.parameters(rows)[inside])
+                model.decode(self.parameters(rows, self._names())[inside])
             )
         result.flags.writeable = False  # it is kept
         return result
@@ -225,8 +248,9 @@ class SkinMaps:
 
     def _changes(self, rows: slice, source: Map) -> tuple[NDArray[np.bool_], Map]:
         """Texels of some rows that edits changed, and their new colours (n, 3)."""
-        before = (self.original or self).parameters(rows)
-        after = self.parameters(rows)
+        base = self.original or self
+        names = self._names() if self.rare else base._names()
+        before, after = base.parameters(rows, names), self.parameters(rows, names)
         changed = (before != after).any(axis=-1) & (self.mask[rows] > 0)
         new, old = (self._captured(skins[changed]) for skins in (after, before))
         ratio = new / np.maximum(old, DARKEST)
@@ -234,7 +258,7 @@ class SkinMaps:
         return changed, source[changed] * (1 + cover * (ratio - 1))
 
     def _captured(self, skins: Map) -> Map:
-        """(n, 5) skins → (n, 3) what the model gives under the light of the capture, gains left."""
+        """(n, 5 or 8) skins → (n, 3) colours under the light of the capture, gains left."""
         colours = load_model(self.model).decode(skins)
         if self.calibration.conversion is None:
             return colours
@@ -264,9 +288,10 @@ class SkinMaps:
         """
         from cutis.albedo import albedo_space
 
-        skins = self.parameters(rows)
+        skins = self.parameters(rows, self._names())
         inside = self.mask[slice(None) if rows is None else rows] > 0
-        spectra = albedo_space(self.tissue).reflectance(skins[inside])
+        tissue = with_rare_chromophores(self.tissue) if self.rare else self.tissue
+        spectra = albedo_space(tissue).reflectance(skins[inside])
         result = np.zeros((*skins.shape[:2], spectra.shape[-1]), dtype=np.float32)
         result[inside] = spectra
         return result

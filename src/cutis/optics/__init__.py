@@ -4,6 +4,8 @@ from cutis.optics.parameters import (
     EPIDERMAL_BLOOD,
     NAMES,
     PARAMETERS,
+    RARE,
+    RARE_NAMES,
     TYPICAL,
     Parameter,
     from_coordinates,
@@ -11,7 +13,16 @@ from cutis.optics.parameters import (
     skin,
     to_coordinates,
 )
-from cutis.optics.tissue import ALIAGA2022, GITLINA2020, MEASURED2026, WAVELENGTHS, Tissue
+from cutis.optics.tissue import (
+    ALIAGA2022,
+    GITLINA2020,
+    MEASURED2026,
+    TISSUES,
+    WAVELENGTHS,
+    Tissue,
+    tissue_named,
+    with_rare_chromophores,
+)
 
 __all__ = [
     "ALIAGA2022",
@@ -20,6 +31,9 @@ __all__ = [
     "MEASURED2026",
     "NAMES",
     "PARAMETERS",
+    "RARE",
+    "RARE_NAMES",
+    "TISSUES",
     "TYPICAL",
     "WAVELENGTHS",
     "Parameter",
@@ -27,5 +41,7 @@ __all__ = [
     "from_coordinates",
     "parameter",
     "skin",
+    "tissue_named",
     "to_coordinates",
+    "with_rare_chromophores",
 ]

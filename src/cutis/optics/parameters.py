@@ -1,11 +1,11 @@
-"""The five free parameters of a skin: names, units, ranges and network coordinates.
+"""The free parameters of a skin: names, units, ranges and network coordinates.
 
 A *coordinate* u ∈ [0, 1] is the warped form of a parameter in which sampling, losses, smoothness
 and priors are expressed: u = (p^(1/k) − low^(1/k)) / (high^(1/k) − low^(1/k)), with k = 3 for
 melanin, 4 for blood and 1 for the others [aliaga2022, albedo space parametrisation].
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -60,20 +60,34 @@ EPIDERMAL_BLOOD = Parameter(
 )
 """Only of tissues that have blood in their epidermis; its range is this project's choice."""
 
+BILIRUBIN = Parameter("bilirubin", "c_bil", "bilirubin in the dermis", "g/L", 0.0, 0.2, 1)
+CAROTENE = Parameter("carotene", "c_βc", "β-carotene in the epidermis", "g/L", 0.0, 0.05, 1)
+METHAEMOGLOBIN = Parameter(
+    "methaemoglobin", "φ_met", "share of haemoglobin that is methaemoglobin", "1", 0.0, 0.7, 1
+)
+RARE = (BILIRUBIN, CAROTENE, METHAEMOGLOBIN)
+"""Only of tissues with rare chromophores, `optics.with_rare_chromophores`; 0 is the tissue without.
+Bilirubin and β-carotene come on top of what the tissue's constants hold."""
+RARE_NAMES = tuple(p.name for p in RARE)
+"""Their names, in the same order."""
+
 PARAMETERS = (MELANIN, BLOOD, THICKNESS, EUMELANIN, OXYGENATION)
 """The five, in the order of every (..., 5) array of this package."""
 NAMES = tuple(p.name for p in PARAMETERS)
 """Their names, in the same order."""
 TYPICAL = {"melanin": 0.02, "blood": 0.02, "thickness": 80.0, "eumelanin": 0.7, "oxygenation": 0.7}
-"""A light skin, for single skins whose other parameters were not given."""
+"""A light skin, for single skins whose other parameters were not given; rare chromophores are 0."""
 
 
 def parameter(name: str) -> Parameter:
-    """The parameter called `name`; raises CutisError naming the five when there is none."""
-    for candidate in PARAMETERS:
+    """The parameter called `name`, of the five or a rare one; CutisError naming them for others."""
+    for candidate in (*PARAMETERS, *RARE):
         if candidate.name == name:
             return candidate
-    raise CutisError(f"unknown parameter {name!r}; the five are {', '.join(NAMES)}")
+    raise CutisError(
+        f"unknown parameter {name!r}; the five are {', '.join(NAMES)}, "
+        f"the rarer {', '.join(RARE_NAMES)}"
+    )
 
 
 def to_coordinates(parameters: ArrayLike) -> NDArray[np.floating]:
@@ -88,8 +102,13 @@ def from_coordinates(coordinates: ArrayLike) -> NDArray[np.floating]:
     return np.stack([p.from_coordinate(u[..., i]) for i, p in enumerate(PARAMETERS)], axis=-1)
 
 
-def skin(values: Mapping[str, float]) -> NDArray[np.float64]:
-    """(5,) parameters of one skin from a mapping; those missing are TYPICAL, all checked."""
+def skin(
+    values: Mapping[str, float], parameters: Sequence[Parameter] = PARAMETERS
+) -> NDArray[np.float64]:
+    """(p,) parameters of one skin from a mapping; those missing are TYPICAL or 0, all checked."""
     for name in values:
-        parameter(name)
-    return np.array([p.check(float(values.get(p.name, TYPICAL[p.name]))) for p in PARAMETERS])
+        if parameter(name) not in parameters:
+            raise CutisError(f"{name} is not a parameter of this tissue")
+    return np.array(
+        [p.check(float(values.get(p.name, TYPICAL.get(p.name, 0.0)))) for p in parameters]
+    )

@@ -4,20 +4,24 @@ A tissue is an immutable value that holds every constant, so that a published mo
 variant and a user's own differ in data, not in code (`dataclasses.replace`).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutis.errors import CutisError
 from cutis.optics import chromophores
-from cutis.optics.parameters import EPIDERMAL_BLOOD, PARAMETERS, Parameter, parameter
+from cutis.optics.parameters import EPIDERMAL_BLOOD, NAMES, PARAMETERS, RARE, Parameter, parameter
 
 WAVELENGTHS = np.arange(380.0, 781.0, 10.0)
 """nm, the 41 bands of every spectrum of this package."""
 WAVELENGTHS.flags.writeable = False
 LARGEST_SHIFT = 30.0
 """nm that bands of a tissue may lie off their tables: from hexane to any lipid, with room."""
+
+CAROTENE_IN_DERMIS = 1 / 3
+"""Concentration of β-carotene in the dermis over that in the epidermis, where it is a parameter: as
+the constants of `ALIAGA2022`; the epidermis always holds more [vahlquist1982]."""
 
 
 @dataclass(frozen=True)
@@ -32,6 +36,9 @@ class Tissue:
     Bands of haemoglobin and of carotene lie `hemoglobin_shift` and `carotene_shift` nm to the red
     of their tables (to the blue below 0). The first is an error of the wavelengths of the
     instruments that a tissue was calibrated with [berns1988]; the second is what lipids do.
+    `rare_chromophores` makes the three of `optics.RARE` parameters too: bilirubin of the dermis as
+    a whole, β-carotene of the epidermis with a third of it in the dermis, and methaemoglobin in
+    place of the other haemoglobin.
     """
 
     name: str
@@ -62,6 +69,7 @@ class Tissue:
     boundary: str = "matched"
     fixed: tuple[tuple[str, float], ...] = ()
     epidermal_blood: bool = False
+    rare_chromophores: bool = False
 
     def __post_init__(self) -> None:
         if self.dimension not in (2, 3):
@@ -82,6 +90,17 @@ class Tissue:
             raise CutisError(f"tissue {self.name}: rayleigh_fraction must lie in 0 to 1")
         if not self.dermis_scattering > 0:
             raise CutisError(f"tissue {self.name}: dermis_scattering must be above 0")
+        if self.epidermal_blood and self.rare_chromophores:
+            raise CutisError(
+                f"tissue {self.name}: blood in the epidermis and rare chromophores do not go "
+                "together; choose one of the two"
+            )
+        for name, _ in self.fixed:
+            if name not in NAMES:
+                known = ", ".join(NAMES)
+                raise CutisError(
+                    f"tissue {self.name}: unknown parameter {name!r} is fixed; known are {known}"
+                )
         fixed = tuple((str(name), parameter(name).check(value)) for name, value in self.fixed)
         object.__setattr__(self, "fixed", fixed)
 
@@ -89,8 +108,14 @@ class Tissue:
     def parameters(self) -> tuple[Parameter, ...]:
         """The free parameters of a skin, in the order of its arrays."""
         held = dict(self.fixed)
-        extra = (EPIDERMAL_BLOOD,) if self.epidermal_blood else ()
-        return tuple(p for p in PARAMETERS if p.name not in held) + extra
+        return tuple(p for p in self.every_parameter if p.name not in held)
+
+    @property
+    def every_parameter(self) -> tuple[Parameter, ...]:
+        """The same with those that `fixed` holds."""
+        if self.rare_chromophores:
+            return (*PARAMETERS, *RARE)
+        return (*PARAMETERS, EPIDERMAL_BLOOD) if self.epidermal_blood else PARAMETERS
 
     @property
     def outer_index(self) -> float:
@@ -129,25 +154,48 @@ class Tissue:
         return self.reduced_scattering(wavelength) / (1.0 - self.anisotropy(wavelength))
 
     def epidermis_absorption(
-        self, melanin: ArrayLike, eumelanin: ArrayLike, wavelength: ArrayLike
+        self,
+        melanin: ArrayLike,
+        eumelanin: ArrayLike,
+        wavelength: ArrayLike,
+        carotene: ArrayLike = 0.0,
     ) -> NDArray[np.float64]:
-        """μa of the epidermis, cm⁻¹; melanin and eumelanin (...,), result (..., wavelengths)."""
+        """μa of the epidermis, cm⁻¹; parameters (...,), result (..., wavelengths).
+
+        `carotene` is what a rare chromophore adds.
+        """
         v_m = np.asarray(melanin, dtype=np.float64)[..., None]
         phi = np.asarray(eumelanin, dtype=np.float64)[..., None]
         lam = np.atleast_1d(wavelength)
         pigment = phi * self.eumelanin(lam) + (1 - phi) * self.pheomelanin(lam)
-        return v_m * pigment + (1 - v_m) * self.epidermis_background(lam)
+        plain = v_m * pigment + (1 - v_m) * self.epidermis_background(lam)
+        return plain + np.asarray(carotene)[..., None] * self.added_carotene(lam)
 
     def dermis_absorption(
-        self, blood: ArrayLike, oxygenation: ArrayLike, wavelength: ArrayLike
+        self,
+        blood: ArrayLike,
+        oxygenation: ArrayLike,
+        wavelength: ArrayLike,
+        bilirubin: ArrayLike = 0.0,
+        carotene: ArrayLike = 0.0,
+        methaemoglobin: ArrayLike = 0.0,
     ) -> NDArray[np.float64]:
-        """μa of the dermis, cm⁻¹; blood and oxygenation (...,), result (..., wavelengths)."""
+        """μa of the dermis, cm⁻¹; parameters (...,), result (..., wavelengths).
+
+        The last three are what rare chromophores add, `carotene` being that of the epidermis.
+        """
         v_b = np.asarray(blood, dtype=np.float64)[..., None]
         oxy = np.asarray(oxygenation, dtype=np.float64)[..., None]
         lam = np.atleast_1d(wavelength)
         deoxygenated, oxygenated = self.whole_blood(lam)
         whole = oxy * oxygenated + (1 - oxy) * deoxygenated
-        return v_b * whole + (1 - v_b) * self.baseline(lam)
+        met = np.asarray(methaemoglobin, dtype=np.float64)[..., None]
+        if np.any(met):
+            whole = (1 - met) * whole + met * self.brown_blood(lam)
+        plain = v_b * whole + (1 - v_b) * self.baseline(lam)
+        yellow = np.asarray(bilirubin)[..., None] * self.added_bilirubin(lam)
+        orange = np.asarray(carotene)[..., None] * self.added_carotene(lam)
+        return plain + yellow + CAROTENE_IN_DERMIS * orange
 
     def epidermis_background(self, wavelength: ArrayLike) -> NDArray[np.float64]:
         """μa of epidermis without melanin, cm⁻¹: β-carotene and baseline."""
@@ -155,8 +203,7 @@ class Tissue:
 
     def whole_blood(self, wavelength: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """μa of fully deoxygenated and fully oxygenated blood, cm⁻¹, pigments in it included."""
-        dissolved = chromophores.bilirubin(wavelength, self.bilirubin)
-        dissolved = dissolved + self._carotene(wavelength, self.beta_carotene_dermis)
+        dissolved = self._dissolved(wavelength)
         substances = (chromophores.deoxyhemoglobin, chromophores.oxyhemoglobin)
         tabulated = np.asarray(wavelength, dtype=np.float64) - self.hemoglobin_shift
         none, full = (
@@ -165,9 +212,29 @@ class Tissue:
         )
         return none + dissolved, full + dissolved
 
-    def _carotene(self, wavelength: ArrayLike, concentration: float) -> NDArray[np.float64]:
+    def added_bilirubin(self, wavelength: ArrayLike) -> NDArray[np.float64]:
+        """μa of the parameter bilirubin in the dermis, cm⁻¹ per g/L."""
+        return chromophores.bilirubin(wavelength, 1.0, chromophores.YELLOW_ENDS)
+
+    def added_carotene(self, wavelength: ArrayLike) -> NDArray[np.float64]:
+        """μa of the parameter carotene in the epidermis, cm⁻¹ per g/L."""
+        return self._carotene(wavelength, 1.0, chromophores.YELLOW_ENDS)
+
+    def brown_blood(self, wavelength: ArrayLike) -> NDArray[np.float64]:
+        """μa of blood all of whose haemoglobin is methaemoglobin, cm⁻¹, pigments in it included."""
+        tabulated = np.asarray(wavelength, dtype=np.float64) - self.hemoglobin_shift
+        brown = self._packed(chromophores.methemoglobin(tabulated, self.hemoglobin))
+        return brown + self._dissolved(wavelength)
+
+    def _dissolved(self, wavelength: ArrayLike) -> NDArray[np.float64]:
+        yellow = chromophores.bilirubin(wavelength, self.bilirubin)
+        return yellow + self._carotene(wavelength, self.beta_carotene_dermis)
+
+    def _carotene(
+        self, wavelength: ArrayLike, concentration: float, last: float = np.inf
+    ) -> NDArray[np.float64]:
         tabulated = np.asarray(wavelength, dtype=np.float64) - self.carotene_shift
-        return chromophores.beta_carotene(tabulated, concentration)
+        return chromophores.beta_carotene(tabulated, concentration, last)
 
     def _packed(self, absorption: NDArray[np.float64]) -> NDArray[np.float64]:
         """What blood of such an absorption, cm⁻¹, absorbs on average in its vessels."""
@@ -202,6 +269,22 @@ MEASURED2026 = Tissue(
 )
 """Calibrated on thousands of measured skins inside published ranges; five free parameters as in
 `ALIAGA2022`. Its albedo goes with a surface of reflectance 0.028 (docs/decisions/0022)."""
+
+TISSUES = {tissue.name: tissue for tissue in (ALIAGA2022, MEASURED2026)}
+"""Tissues by name: those with the five parameters of skin maps, which commands take."""
+
+
+def tissue_named(name: str) -> Tissue:
+    """The one of `TISSUES` called `name`; CutisError that lists them when there is none."""
+    if name not in TISSUES:
+        raise CutisError(f"unknown tissue {name!r}; choose {' or '.join(TISSUES)}")
+    return TISSUES[name]
+
+
+def with_rare_chromophores(tissue: Tissue) -> Tissue:
+    """The same tissue with bilirubin, β-carotene and methaemoglobin as parameters too."""
+    return replace(tissue, rare_chromophores=True)
+
 
 # 14.74 λ^−0.22 and 2.2e11 λ^−4 mm⁻¹ [donner2006] at 500 nm, in cm⁻¹
 _MIE, _RAYLEIGH = 147.4 * 500.0**-0.22, 2.2e12 * 500.0**-4.0
