@@ -163,17 +163,17 @@ def summary_table(found: Study) -> str:
     relit = [float(np.median(light[rows])) for rows in bands.values()]
     fit = found.rmse(fitted)[of].mean()
     rows = [
-        ("Fits of spectra: mean RMSE", "0.0050", f"{fit:.4f}", fit <= 0.005),
-        ("worst mean bias of a wavelength", "0.0030", f"{bias:+.4f} at {at:g} nm",
+        ("Fits of spectra: mean RMSE", "0.005", f"{fit:.5f}", fit <= 0.005),
+        ("worst mean bias of a wavelength", "0.003", f"{bias:+.5f} at {at:g} nm",
          abs(bias) < 0.003),
     ]  # fmt: skip
     for split in ("subject", "origin"):
         rms = found.rmse(found.implied[f"{LEARNED}, {split}s left out"])[of]
         median, high = np.percentile(rms, [50, 95])
         rows += [
-            (f"RGB → spectrum, {split}s left out: median RMS", "0.0055", f"{median:.4f}",
+            (f"RGB → spectrum, {split}s left out: median RMS", "0.0055", f"{median:.5f}",
              median <= 0.0055),
-            ("95th percentile", "0.0150", f"{high:.4f}", high <= 0.015),
+            ("95th percentile", "0.015", f"{high:.5f}", high <= 0.015),
         ]  # fmt: skip
     for split in ("subject", "origin"):
         overall, (low, top) = share(split, of), span(split)

@@ -1,6 +1,6 @@
 """What `validation.py` measures: fits, implied spectra, intervals, on skins left out."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -20,6 +20,7 @@ from cutis.optics import ALIAGA2022, MEASURED2026, Tissue, from_coordinates, to_
 
 Array = np.ndarray
 TISSUES = (ALIAGA2022, MEASURED2026)
+"""The last one gives the parameters that intervals are judged by."""
 MODELS = tuple(dict.fromkeys((DEFAULT, EXACT, "aliaga2022")))
 PER_BAND = 600
 """Skins of a band of ITA° that a prior of the validation is trained on, at most."""
@@ -91,6 +92,8 @@ def study(skins: ArchivedSkins, per_band: int = PER_BAND, models: Iterable[str] 
     for what, parts in (("origin", skins.origins), ("subject", subject_folds(skins))):
         name = f"{LEARNED}, {what}s left out"
         found.implied[name], found.held[what] = left_out(skins, parts, per_band, what)
+        learned = measured(skins, regression(skins, parts))
+        found.implied[f"linear regression, {what}s left out"] = learned
     for name in models:
         model = load_model(name)
         values = model.encode(colours).astype(np.float64)
@@ -104,11 +107,7 @@ def study(skins: ArchivedSkins, per_band: int = PER_BAND, models: Iterable[str] 
             sigma = trust[:, :5].astype(np.float64)
             slopes = unit_slopes(to_coordinates(values).astype(np.float64))
             found.held["shipped"] = Held(values, sigma, sigma / slopes)
-    rest: tuple[tuple[str, Callable[[Array], Array]], ...] = (
-        ("Jakob & Hanika 2019", jakob_hanika), ("Mallett & Yuksel 2019", mallett),
-    )  # fmt: skip
-    found.implied["linear regression, origins left out"] = measured(skins, regression(skins))
-    for name, method in rest:
+    for name, method in (("Jakob & Hanika 2019", jakob_hanika), ("Mallett & Yuksel 2019", mallett)):
         found.implied[name] = measured(skins, method(colours.astype(np.float64)))
     return found
 
@@ -144,13 +143,13 @@ def left_out(
     return spectra, Held(values, sigma * unit_slopes(u), sigma)
 
 
-def regression(skins: ArchivedSkins) -> Array:
-    """(n, w) albedo as a constant and multiples of R, G, B, fitted to the other origins."""
+def regression(skins: ArchivedSkins, parts: Array) -> Array:
+    """(n, w) albedo as a constant and multiples of R, G, B, fitted to the other parts."""
     terms = np.column_stack([np.ones(len(skins.spectra)), skins.albedo])
     albedo = (skins.spectra - skins.specular) / (1 - skins.specular)
     found = np.empty_like(albedo)
-    for origin in np.unique(skins.origins):
-        out = skins.origins == origin
+    for part in np.unique(parts):
+        out = parts == part
         found[out] = terms[out] @ np.linalg.lstsq(terms[~out], albedo[~out], rcond=None)[0]
     return found
 

@@ -96,7 +96,7 @@ def test_priors_see_nothing_of_the_part_left_out(tools, few):
 
 def test_regression_sees_nothing_of_the_origin_left_out(tools, few):
     rows = few.origins == 4
-    before, after = (tools[2].regression(s) for s in (few, unseen(few, rows)))
+    before, after = (tools[2].regression(s, few.origins) for s in (few, unseen(few, rows)))
     assert np.abs(after - before)[rows].max() < 1e-9
     assert np.abs(after - before)[~rows].max() > 1e-4
 
