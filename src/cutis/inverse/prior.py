@@ -10,9 +10,10 @@ finds the most probable one that has the colour (`fit.py`). P, the inverse covar
 skins around z₀, leaves room for lips, moles, scars and rashes: off the measured colours the
 expectation stays at the nearest of them, and the colour decides.
 
-The standard deviation σ_p(c) = exp(φ(y) · `spreads`) is such that u ± 1.645 σ, with the slope of
-parameter by coordinate at u, held nine of ten skins that the prior had not seen. Where colours are
-unlike measured skin, σ goes to what is known without a colour, `prior_sigma`.
+The standard deviation σ_p(c) = exp(ψ(c) · `spreads`), ψ being φ and hats over ITA°, is such that
+u ± 1.645 σ, with the slope of parameter by coordinate at u, held nine of ten skins that the prior
+had not seen, in each band of ITA°. Where colours are unlike measured skin, σ goes to what is known
+without a colour, `prior_sigma`.
 """
 
 from dataclasses import dataclass, fields
@@ -22,7 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutis.albedo import AlbedoSpace
-from cutis.colour import delta_e
+from cutis.colour import delta_e, ita
 from cutis.inverse.fit import fit, logistic
 from cutis.optics import PARAMETERS, from_coordinates
 
@@ -37,6 +38,8 @@ UNLIKE = 1.5
 """Multiple of `radius` at which colours are half as likely to be skin."""
 OFF_GAMUT = 1.0
 """CIEDE2000 between a colour and that of its skin at which confidence is a half."""
+TONES = (-45.0, -10.0, 19.0, 34.0, 48.0, 60.0)
+"""ITA° at the tops of the hats: about the middles of the six bands."""
 BAND = 1 << 16
 """Colours fitted at a time."""
 
@@ -46,7 +49,7 @@ class SkinPrior:
     """Prior of one tissue's five parameters given a colour; float64, in network coordinates.
 
     `centre` (3,), `whitening` (3, 3) and `radius` (1,) say where the colours of measured skins lie;
-    `means` (10, 5), `precision` (5, 5), `spreads` (10, 5) and `prior_sigma` (5,) are those above.
+    `means` (10, 5), `precision` (5, 5), `spreads` (15, 5) and `prior_sigma` (5,) are those above.
     """
 
     centre: Array
@@ -69,6 +72,12 @@ class SkinPrior:
         a, b, c = (y * np.minimum(1, self.radius[0] / np.maximum(r, 1e-9))).T
         return np.stack([np.ones(len(y)), a, b, c, a * a, b * b, c * c, a * b, a * c, b * c], 1)
 
+    def spread_features(self, colours: ArrayLike) -> Array:
+        """(n, 3) linear sRGB → (n, 15): `features`, and hats over ITA° but the first."""
+        tone = ita(np.maximum(np.asarray(colours, dtype=np.float64), DARKEST))
+        hats = [np.interp(tone, TONES, top) for top in np.eye(len(TONES))[1:]]
+        return np.concatenate([self.features(colours), np.stack(hats, axis=1)], axis=1)
+
     def expected(self, colours: ArrayLike) -> NDArray[np.float32]:
         """(n, 3) linear sRGB → (n, 5) coordinates that measured skins of about this colour have."""
         return logistic(np.clip(self.features(colours) @ self.means, -LOGIT, LOGIT))
@@ -90,7 +99,7 @@ class SkinPrior:
         rgb = np.asarray(colours, dtype=np.float32)
         error = delta_e(space.rgb(from_coordinates(coordinates)), rgb).astype(np.float64)
         confidence = self.likeness(rgb) / (1 + (error / OFF_GAMUT) ** 4)
-        known = np.exp(self.features(rgb) @ self.spreads)
+        known = np.exp(self.spread_features(rgb) @ self.spreads)
         unknown = np.maximum(known, self.prior_sigma)
         return confidence[:, None] * known + (1 - confidence[:, None]) * unknown, confidence
 

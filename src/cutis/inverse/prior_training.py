@@ -10,15 +10,16 @@ every band of ITA° weighing the same, with a weak pull to the skins that fit th
 slope of u by the expectation is that of a fit that keeps the colour, I − K J, J being the slope of
 colour by logits and K = P⁻¹Jᵀ (J P⁻¹ Jᵀ + s²)⁻¹.
 
-Spreads are the ninth decile of |parameter − estimate|, over slope, as a log-quadratic of the
-colour, found by quantile regression on skins of subjects that were left out.
+Spreads are the ninth decile of |parameter − estimate|, over slope, as a function of the colour
+(`SkinPrior.spread_features`), by linear quantile regression of logarithms [koenker1978] on skins of
+subjects that were left out.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from cutis.albedo import AlbedoSpace, albedo_space
 from cutis.albedo.sampled import SampledSpace
@@ -31,7 +32,7 @@ from cutis.optics import Tissue, from_coordinates, to_coordinates
 Array = NDArray[np.float64]
 ITA_BANDS = (-30.0, 10.0, 28.0, 41.0, 55.0)
 """ITA° between the bands dark, brown, tan, intermediate, light and very light [chardon1991ita]."""
-EDGE = 0.03
+EDGE = 0.1
 """Fitted coordinates this near to an end of their range count as this far, so that logits stay."""
 SLACK = 0.02
 """Added to the covariance of logits around the means."""
@@ -82,12 +83,19 @@ def even_weights(bands: NDArray[np.intp]) -> Array:
 
 
 def train_prior(
-    skins: MeasuredSkins, tissue: Tissue, progress: Callable[[int, int], None] | None = None
+    skins: MeasuredSkins,
+    tissue: Tissue,
+    progress: Callable[[int, int], None] | None = None,
+    freedom: ArrayLike = (1.0, 1.0, 1.0, 1.0, 1.0),
 ) -> SkinPrior:
-    """The prior of `tissue` from measured skins. `progress(done, total)` is called per fold."""
+    """The prior of `tissue` from measured skins. `progress(done, total)` is called per fold.
+
+    `freedom` (5,), above 0 and up to 1, is how far each parameter may follow the colour: less makes
+    steadier maps whose spectra are farther from the measured ones (docs/decisions/0023).
+    """
     fitter = SpectralFitter(skins.wavelengths, tissue, specular=skins.specular)
     fitted = np.asarray(to_coordinates(fitter.fit(skins.spectra).values), dtype=np.float64)
-    learner = _Learner(skins, tissue, fitted)
+    learner = _Learner(skins, tissue, fitted, freedom)
     folds = _folds(skins.subjects)
     rest = np.full(fitted.shape, np.nan)
     for k in range(FOLDS):
@@ -97,7 +105,8 @@ def train_prior(
         if progress:
             progress(k + 1, FOLDS + 1)
     prior = learner.learn(np.arange(len(fitted)))
-    spreads = _quantiles(prior.features(learner.colours), rest, learner.weights, 0.9)
+    terms, even = prior.spread_features(learner.colours), np.sqrt(learner.weights)
+    spreads = _quantiles(terms, rest, even / even.mean(), 0.9)
     spreads[0] -= np.log(NINETY)
     if progress:
         progress(FOLDS + 1, FOLDS + 1)
@@ -113,8 +122,11 @@ def _folds(subjects: NDArray[np.str_]) -> NDArray[np.intp]:
 class _Learner:
     """Measured skins with what training needs of them."""
 
-    def __init__(self, skins: MeasuredSkins, tissue: Tissue, fitted: Array) -> None:
+    def __init__(
+        self, skins: MeasuredSkins, tissue: Tissue, fitted: Array, freedom: ArrayLike
+    ) -> None:
         self.skins, self.fitted = skins, fitted
+        self.freedom = np.asarray(freedom, dtype=np.float64)
         self.space: AlbedoSpace = albedo_space(tissue)
         self.sampled = SampledSpace(self.space, skins.wavelengths)
         self.colours = skins.albedo.astype(np.float32)
@@ -131,16 +143,17 @@ class _Learner:
         order = np.argsort(distance)
         outermost = np.searchsorted(np.cumsum(w[order]), INSIDE)
         radius = distance[order][[outermost]]
-        none = np.zeros((10, 5))
         mean = w @ u
         sigma = np.sqrt(w @ (u - mean) ** 2)
-        start = SkinPrior(centre, whitening, radius, none, np.eye(5), none, sigma)
+        means, spreads = np.zeros((10, 5)), np.zeros((15, 5))
+        start = SkinPrior(centre, whitening, radius, means, np.eye(5), spreads, sigma)
         terms = start.features(self.colours[rows])
         z = logit(np.clip(u, EDGE, 1 - EDGE)).astype(np.float64)
+        z = w @ z + self.freedom * (z - w @ z)
         gram = terms.T @ (terms * w[:, None]) + 1e-4 * np.eye(10)
         means = np.linalg.solve(gram, terms.T @ (z * w[:, None]))
         around = z - terms @ means
-        spare = (around * w[:, None]).T @ around + SLACK * np.eye(5)
+        spare = (around * w[:, None]).T @ around + SLACK * np.diag(self.freedom**2)
         prior = replace(start, means=means, precision=np.linalg.inv(spare))
         return self._towards_spectra(prior, rows, terms, w)
 
@@ -210,16 +223,16 @@ class _Learner:
 
 
 def _quantiles(terms: Array, values: Array, weights: Array, share: float) -> Array:
-    """(10, p) coefficients c such that `share` of values (n, p) lie below exp(terms · c).
+    """(m, p) coefficients c such that `share` of values (n, p) lie below exp(terms (n, m) · c).
 
-    Quantile regression of the logarithms by reweighted least squares.
+    The dual of the linear program whose minimum is the regression quantile of the logarithms.
     """
+    from scipy.optimize import linprog
+
+    ends = np.stack([np.zeros(len(weights)), weights], axis=1)
     found = np.empty((terms.shape[1], values.shape[1]))
     for i, column in enumerate(np.log(np.maximum(values, 1e-6)).T):
-        c = np.linalg.lstsq(terms, column, rcond=None)[0]
-        for _ in range(100):
-            above = column - terms @ c
-            w = weights * np.where(above > 0, share, 1 - share) / np.maximum(np.abs(above), 1e-3)
-            c = np.linalg.solve(terms.T @ (terms * w[:, None]), terms.T @ (w * column))
-        found[:, i] = c
+        balance = (1 - share) * terms.T @ weights
+        solved = linprog(-column, A_eq=terms.T, b_eq=balance, bounds=ends, method="highs")
+        found[:, i] = -solved.eqlin.marginals
     return found
