@@ -13,13 +13,13 @@ from rich.progress import track
 from cutis import estimate, read, read_mask
 from cutis.albedo import albedo_space, uniform
 from cutis.colour import delta_e, is_skin_colour
-from cutis.inverse import load_model
+from cutis.figures.subjects import data_folder
+from cutis.inverse import load_model, tissue_of
 from cutis.maps import report
 from cutis.optics import NAMES, to_coordinates
 
 ROOT = Path(__file__).parents[1]
-SHARED = ROOT.parent / "shared" / "data" / "albedo"
-MODELS = ("aliaga2022-exact", "aliaga2022")
+MODELS = ("measured2026", "aliaga2022-exact", "aliaga2022")
 TENSORS = ("lookup", "lookup-55k")
 """Compared in the closed loop only."""
 ORDER = ("melanin", "blood", "thickness", "oxygenation", "eumelanin")
@@ -30,12 +30,14 @@ def textures() -> list[tuple[Path, Path | None]]:
     """Capture and mask of every texture at hand, the bundled one first."""
     examples = ROOT / "examples"
     found = [(examples / "bioskin_capture1.jpg", examples / "bioskin_capture1_mask.jpg")]
-    head = SHARED / "makehuman_head_mask.png"
-    for path in sorted(SHARED.glob("*.*g")):
+    folder = data_folder(None)
+    if folder is None:
+        print("the shared data is absent: only the bundled capture")
+        return found
+    head = folder / "albedo" / "makehuman_head_mask.png"
+    for path in sorted((folder / "albedo").glob("*.*g")):
         if "mask" not in path.name and path.name != found[0][0].name:
             found.append((path, head if path.name.startswith("makehuman") else None))
-    if not SHARED.is_dir():
-        print(f"{SHARED.name} of the shared data is absent: only the bundled capture")
     return found
 
 
@@ -47,9 +49,12 @@ def closed_loop() -> tuple[str, str]:
     for path, mask_path in track(textures(), "closed loop"):
         face = read(path)
         mask = None if mask_path is None else read_mask(mask_path, face.shape)
-        automatic = estimate(face, mask, white="auto", model=MODELS[0])
-        runs = [(automatic.calibration.gains, model) for model in (*MODELS, *TENSORS)]
-        runs.append(((1.0, 1.0, 1.0), MODELS[0]))
+        automatic = {  # the gains are those that suit the tissue
+            tissue_of(model): estimate(face, mask, white="auto", model=model).calibration.gains
+            for model in MODELS[:2]
+        }
+        runs = [(automatic[tissue_of(model)], model) for model in (*MODELS, *TENSORS)]
+        runs += [((1.0, 1.0, 1.0), model) for model in MODELS[:2]]
         for gains, model in runs:
             found = report(estimate(face, mask, white=gains, model=model))
             label = "none" if gains == (1.0, 1.0, 1.0) else " ".join(f"{g:.2f}" for g in gains)
@@ -69,14 +74,14 @@ def closed_loop() -> tuple[str, str]:
 
 
 def recovery() -> str:
-    """R² of each parameter, in network coordinates, over uniform validation skins."""
+    """R² of each parameter, in network coordinates, over uniform skins of the model's tissue."""
     skins = uniform(SKINS, 2023)
     truth = to_coordinates(skins)
-    rgb = albedo_space().rgb(skins)
-    skin_coloured = is_skin_colour(rgb)
     rows = ["| model | over | " + " | ".join(ORDER) + " | ΔE00 mean | p95 |", "|---|" + "---|" * 8]
     for name in MODELS:
         model = load_model(name)
+        rgb = albedo_space(model.tissue).rgb(skins)
+        skin_coloured = is_skin_colour(rgb)
         found = model.encode(rgb)
         errors = delta_e(model.decode(found), rgb)
         squares = (to_coordinates(found) - truth) ** 2
