@@ -150,7 +150,7 @@ class _Learner:
         terms = start.features(self.colours[rows])
         z = logit(np.clip(u, EDGE, 1 - EDGE)).astype(np.float64)
         z = w @ z + self.freedom * (z - w @ z)
-        gram = terms.T @ (terms * w[:, None]) + 1e-4 * np.eye(10)
+        gram = terms.T @ (terms * w[:, None]) + 1e-4 * np.eye(terms.shape[1])
         means = np.linalg.solve(gram, terms.T @ (z * w[:, None]))
         around = z - terms @ means
         spare = (around * w[:, None]).T @ around + SLACK * np.diag(self.freedom**2)
@@ -161,7 +161,7 @@ class _Learner:
         self, prior: SkinPrior, rows: NDArray[np.intp], terms: Array, w: Array
     ) -> SkinPrior:
         """Moves the means to where the implied spectra are nearest to the measured ones."""
-        start, damping = prior.means, 1e-3
+        start, damping, size = prior.means, 1e-3, prior.means.size
         anchor = np.kron(terms.T @ (terms * w[:, None]), prior.precision)
         residual = self._residuals(prior, rows)
         rms = np.sqrt((residual**2).mean(axis=1))
@@ -170,14 +170,16 @@ class _Learner:
             slope = self._slopes(prior, rows)
             weight = w / np.maximum(rms, 1e-3) / residual.shape[1]
             inner = np.einsum("nlp,nlq,n->npq", slope, slope, weight, optimize=True)
-            curve = np.einsum("nf,ng,npq->fpgq", terms, terms, inner, optimize=True).reshape(50, 50)
+            curve = np.einsum("nf,ng,npq->fpgq", terms, terms, inner, optimize=True).reshape(
+                size, size
+            )
             lever = np.einsum("nlp,nl,n->np", slope, residual, weight, optimize=True)
             pull = PULL * cost * anchor
             gradient = (terms.T @ lever).ravel() + pull @ (prior.means - start).ravel()
             curve = curve + pull
             for _ in range(6):
-                damped = curve + damping * np.diag(np.diag(curve)) + 1e-9 * np.eye(50)
-                step = np.linalg.solve(damped, gradient).reshape(10, 5)
+                damped = curve + damping * np.diag(np.diag(curve)) + 1e-9 * np.eye(size)
+                step = np.linalg.solve(damped, gradient).reshape(prior.means.shape)
                 trial = replace(prior, means=prior.means - step)
                 new = self._residuals(trial, rows)
                 new_rms = np.sqrt((new**2).mean(axis=1))
