@@ -1,7 +1,7 @@
 """What measured skins of a colour are like: the prior under which colours become skins.
 
-Of the colour c of an albedo, y(c) are the whitened logarithms of its red, green and blue, and r
-their length; beyond the measured skins, r > `radius`, y is drawn back to it. With φ the ten terms
+Of the colour c of an albedo, y(c) are the whitened logarithms of its red, green and blue, each with
+DARK added, and r their length; beyond the measured skins, r > `radius`, y is drawn back to it. With φ the ten terms
 of a quadratic in y, skins are expected at the logits z₀(c) = φ(y) · `means`, and
 
     minimise  |f(u) − c|² / s(c)² + (z − z₀)ᵀ P (z − z₀),     u = 1 / (1 + e^−z)
@@ -28,8 +28,8 @@ from cutis.inverse.fit import fit, logistic
 from cutis.optics import PARAMETERS, from_coordinates
 
 Array = NDArray[np.float64]
-DARKEST = 1e-4
-"""Albedo that logarithms are taken of at least."""
+DARK = 0.01
+"""Added to albedo before its logarithm, so that noise of the darkest skins does not rule."""
 LOGIT = 6.0
 """Bound on the expected logits."""
 TOLERANCE = 0.001
@@ -74,7 +74,7 @@ class SkinPrior:
 
     def spread_features(self, colours: ArrayLike) -> Array:
         """(n, 3) linear sRGB → (n, 15): `features`, and hats over ITA° but the first."""
-        tone = ita(np.maximum(np.asarray(colours, dtype=np.float64), DARKEST))
+        tone = ita(np.maximum(np.asarray(colours, dtype=np.float64), 0.0))
         hats = [np.interp(tone, TONES, top) for top in np.eye(len(TONES))[1:]]
         return np.concatenate([self.features(colours), np.stack(hats, axis=1)], axis=1)
 
@@ -104,8 +104,12 @@ class SkinPrior:
         return confidence[:, None] * known + (1 - confidence[:, None]) * unknown, confidence
 
     def _whitened(self, colours: ArrayLike) -> Array:
-        rgb = np.asarray(colours, dtype=np.float64)
-        return (np.log(np.maximum(rgb, DARKEST)) - self.centre) @ self.whitening.T
+        return (log_colours(colours) - self.centre) @ self.whitening.T
+
+
+def log_colours(colours: ArrayLike) -> Array:
+    """(n, 3) linear sRGB → logarithms of it and DARK, float64; below 0 counts as 0."""
+    return np.log(np.maximum(np.asarray(colours, dtype=np.float64), 0.0) + DARK)
 
 
 def unit_slopes(coordinates: Array) -> Array:
