@@ -11,7 +11,7 @@ finds the most probable one that has the colour (`fit.py`). P, the inverse covar
 skins around z₀, leaves room for lips, moles, scars and rashes: off the measured colours the
 expectation stays at the nearest of them, and the colour decides.
 
-The standard deviation σ_p(c) = exp(ψ(c) · `spreads`), ψ being φ and hats over ITA°, is such that
+The standard deviation σ_p(c) = exp(ψ(c) · `spreads`), ψ being 1, y and hats over ITA°, is such that
 u ± 1.645 σ, with the slope of parameter by coordinate at u, held nine of ten skins that the prior
 had not seen, in each band of ITA°. Where colours are unlike measured skin, σ goes to what is known
 without a colour, `prior_sigma`.
@@ -51,7 +51,7 @@ class SkinPrior:
     """Prior of one tissue's five parameters given a colour; float64, in network coordinates.
 
     `centre` (3,), `whitening` (3, 3) and `radius` (1,) say where the colours of measured skins lie;
-    `means` (10, 5), `precision` (5, 5), `spreads` (15, 5) and `prior_sigma` (5,) are those above.
+    `means` (10, 5), `precision` (5, 5), `spreads` (9, 5) and `prior_sigma` (5,) are those above.
     """
 
     centre: Array
@@ -75,10 +75,10 @@ class SkinPrior:
         return np.stack([np.ones(len(y)), a, b, c, a * a, b * b, c * c, a * b, a * c, b * c], 1)
 
     def spread_features(self, colours: ArrayLike) -> Array:
-        """(n, 3) linear sRGB → (n, 15): `features`, and hats over ITA° but the first."""
+        """(n, 3) linear sRGB → (n, 9): the first four `features`, hats over ITA° but the first."""
         tone = ita(np.maximum(np.asarray(colours, dtype=np.float64), 0.0))
         hats = [np.interp(tone, TONES, top) for top in np.eye(len(TONES))[1:]]
-        return np.concatenate([self.features(colours), np.stack(hats, axis=1)], axis=1)
+        return np.concatenate([self.features(colours)[:, :4], np.stack(hats, axis=1)], axis=1)
 
     def expected(self, colours: ArrayLike) -> NDArray[np.float32]:
         """(n, 3) linear sRGB → (n, 5) coordinates that measured skins of about this colour have."""

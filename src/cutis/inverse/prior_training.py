@@ -6,7 +6,8 @@ moved by Gauss–Newton to minimise
 
     Σ_skins w · RMS_λ (ρ + (1 − ρ) f(u(c), λ) − m(λ)),
 
-every band of ITA° weighing the same, with a weak pull to the skins that fit the whole spectra. The
+every band of ITA° weighing the same, with a weak pull to the skins that fit the whole spectra, the
+most probable ones under the spread of all (dark skins say little of their blood). The
 slope of u by the expectation is, to first order, that of a fit that keeps the colour, I − K J, J
 being the slope of colour by logits and K = P⁻¹Jᵀ (J P⁻¹ Jᵀ + s²)⁻¹; steps that do not help are cut.
 
@@ -95,8 +96,11 @@ def train_prior(
     steadier maps whose spectra are farther from the measured ones (docs/decisions/0023).
     """
     fitter = SpectralFitter(skins.wavelengths, tissue, specular=skins.specular)
-    fitted = np.asarray(to_coordinates(fitter.fit(skins.spectra).values), dtype=np.float64)
-    learner = _Learner(skins, tissue, fitted, freedom)
+    found = fitter.fit(skins.spectra)
+    fitted = np.asarray(to_coordinates(found.values), dtype=np.float64)
+    slopes = unit_slopes(fitted)
+    doubt = found.covariance / (slopes[:, :, None] * slopes[:, None, :])
+    learner = _Learner(skins, tissue, fitted, doubt, freedom)
     folds = _folds(skins.subjects)
     rest = np.full(fitted.shape, np.nan)
     for k in range(FOLDS):
@@ -124,9 +128,9 @@ class _Learner:
     """Measured skins with what training needs of them."""
 
     def __init__(
-        self, skins: MeasuredSkins, tissue: Tissue, fitted: Array, freedom: ArrayLike
+        self, skins: MeasuredSkins, tissue: Tissue, fitted: Array, doubt: Array, freedom: ArrayLike
     ) -> None:
-        self.skins, self.fitted = skins, fitted
+        self.skins, self.fitted, self.doubt = skins, fitted, doubt
         self.freedom = np.asarray(freedom, dtype=np.float64)
         self.space: AlbedoSpace = albedo_space(tissue)
         self.sampled = SampledSpace(self.space, skins.wavelengths)
@@ -145,10 +149,10 @@ class _Learner:
         mean = w @ u
         away = np.abs(u - mean)
         sigma = np.array([_quantile(column, w, 0.9) for column in away.T]) / NINETY
-        means, spreads = np.zeros((10, 5)), np.zeros((15, 5))
+        means, spreads = np.zeros((10, 5)), np.zeros((9, 5))
         start = SkinPrior(centre, whitening, radius, means, np.eye(5), spreads, sigma)
         terms = start.features(self.colours[rows])
-        z = logit(np.clip(u, EDGE, 1 - EDGE)).astype(np.float64)
+        z = logit(np.clip(self._believed(rows, w), EDGE, 1 - EDGE)).astype(np.float64)
         z = w @ z + self.freedom * (z - w @ z)
         gram = terms.T @ (terms * w[:, None]) + 1e-4 * np.eye(terms.shape[1])
         means = np.linalg.solve(gram, terms.T @ (z * w[:, None]))
@@ -156,6 +160,14 @@ class _Learner:
         spare = (around * w[:, None]).T @ around + SLACK * np.diag(self.freedom**2)
         prior = replace(start, means=means, precision=np.linalg.inv(spare))
         return self._towards_spectra(prior, rows, terms, w)
+
+    def _believed(self, rows: NDArray[np.intp], w: Array) -> Array:
+        """(n, 5) fitted coordinates drawn to the mean of all as far as spectra leave them open."""
+        u = self.fitted[rows]
+        away = u - w @ u
+        spread = (away * w[:, None]).T @ away
+        solved = np.linalg.solve(spread + self.doubt[rows], away[:, :, None])[:, :, 0]
+        return np.asarray(w @ u + solved @ spread)
 
     def _towards_spectra(
         self, prior: SkinPrior, rows: NDArray[np.intp], terms: Array, w: Array
