@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from cutis.albedo import AlbedoSpace
 from cutis.inverse.baked import MEASURED_CHART, Baked, Chart, Solver
 from cutis.inverse.prior import SkinPrior, unit_slopes
+from cutis.optics import PARAMETERS
 
 TRUST_CHART = Chart(MEASURED_CHART.low, MEASURED_CHART.high, (56, 40, 44))
 """σ varies slowly: half the cells of the skins along each axis."""
@@ -28,8 +29,12 @@ def trust_of(prior: SkinPrior, space: AlbedoSpace) -> Solver:
 
 
 def look_up_trust(table: Baked, colours: NDArray[np.float32]) -> NDArray[np.float32]:
-    """(n, 3) calibrated linear sRGB → (n, 6): σ of the five in their units, and confidence."""
+    """(n, 3) calibrated linear sRGB → (n, 6): σ of the five in their units, and confidence.
+
+    No σ is wider than the range: at steep ends of a range, and far from skin, slopes promise more.
+    """
     found = table.values(colours)
-    np.exp(found[:, :5], out=found[:, :5])
+    widths = np.array([known.high - known.low for known in PARAMETERS], np.float32)
+    np.minimum(np.exp(found[:, :5]), widths, out=found[:, :5])
     np.clip(found[:, 5], 0, 1, out=found[:, 5])
     return found
