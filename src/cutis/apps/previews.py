@@ -103,7 +103,7 @@ class Previews:
 def _sheet(
     path: Path, sigmas: Sequence[Parameter], pictures: Mapping[str, NDArray[np.float32]]
 ) -> None:
-    """σ of the maps in a row, each with its scale below, from 0 to what 99 % stay below.
+    """σ of the maps in a row, each with its scale below, from 0 to what 95 % stay below.
 
     Of texels that are likely skin, where there are some: what little is known of hair and edges
     would leave skin blank.
@@ -120,7 +120,7 @@ def _sheet(
     for axes, known in zip(rows, sigmas, strict=True):
         values = pictures[known.name + SIGMA]
         seen = values[np.isfinite(values) & sure]
-        high = float(np.percentile(seen, 99)) if seen.size else 1.0
+        high = float(np.percentile(seen, 95)) if seen.size else 1.0
         step = max(1, values.shape[1] // 400)
         shown = axes.imshow(
             values[::step, ::step], cmap=COLOUR_MAPS[known.name], vmin=0, vmax=max(high, 1e-9),
