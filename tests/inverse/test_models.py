@@ -12,6 +12,15 @@ from cutis.inverse.models import DEFAULT, stored_name
 from cutis.optics import ALIAGA2022, MEASURED2026, PARAMETERS, from_coordinates
 
 
+def test_no_sigma_is_wider_than_its_range():
+    colours = [[0, 0, 0], [1, 1, 1], [0, 0, 1], [1, 0, 0], [0.02, 0.02, 0.02], [5, 3, 2.5]]
+    found = load_model().trust(colours)
+    widths = np.array([known.high - known.low for known in PARAMETERS], np.float32)
+    assert (found[:, :5] > 0).all()
+    assert (found[:, :5] <= widths).all()
+    assert (found[:, :5] == widths).any()  # some would be
+
+
 @pytest.mark.parametrize("name", MODELS)
 def test_parameters_are_in_range_for_any_colour(name):
     colours = [[0, 0, 0], [1, 1, 1], [0, 0, 1], [9, 7, 5], [-0.1, 0.2, 0.1], [0.5, 0.3, 0.2]]

@@ -45,7 +45,10 @@ def test_models_that_know_none_say_so(face_rgb):
 
 
 def test_sigma_can_be_left_out(trusting, face_rgb):
-    assert estimate(face_rgb, sigma=False).sigmas == {}
+    maps = estimate(face_rgb, sigma=False)
+    assert maps.sigmas == {}
+    with pytest.raises(CutisError, match="made without; estimate again"):
+        maps.sigma("melanin")
 
 
 def test_maps_can_be_copied(skin):

@@ -1,7 +1,8 @@
 """What measured skins of a colour are like: the prior under which colours become skins.
 
-Of the colour c of an albedo, y(c) are the whitened logarithms of its red, green and blue, and r
-their length; beyond the measured skins, r > `radius`, y is drawn back to it. With φ the ten terms
+Of the colour c of an albedo, y(c) are the whitened logarithms of its red, green and blue, each with
+DARK added, and r their length; beyond the measured skins, r > `radius`, y is
+drawn back to it, as r (1 + (r / `radius`)⁸)^−⅛. With φ the ten terms
 of a quadratic in y, skins are expected at the logits z₀(c) = φ(y) · `means`, and
 
     minimise  |f(u) − c|² / s(c)² + (z − z₀)ᵀ P (z − z₀),     u = 1 / (1 + e^−z)
@@ -28,13 +29,13 @@ from cutis.inverse.fit import fit, logistic
 from cutis.optics import PARAMETERS, from_coordinates
 
 Array = NDArray[np.float64]
-DARKEST = 1e-4
-"""Albedo that logarithms are taken of at least."""
+DARK = 0.03
+"""Added to albedo before its logarithm, so that noise of the darkest skins does not rule."""
 LOGIT = 6.0
 """Bound on the expected logits."""
 TOLERANCE = 0.001
 """Relative colour error worth one standard deviation of the prior (see `fit.py`)."""
-UNLIKE = 1.5
+UNLIKE = 1.2
 """Multiple of `radius` at which colours are half as likely to be skin."""
 OFF_GAMUT = 1.0
 """CIEDE2000 between a colour and that of its skin at which confidence is a half."""
@@ -63,18 +64,18 @@ class SkinPrior:
     def likeness(self, colours: ArrayLike) -> Array:
         """(n, 3) linear sRGB → (n,) in [0, 1]: 1 for colours of measured skins, 0 far away."""
         r = np.sqrt((self._whitened(colours) ** 2).sum(axis=1))
-        return 1 / (1 + (r / (UNLIKE * self.radius[0])) ** 8)
+        return 1 / (1 + (r / (UNLIKE * self.radius[0])) ** 12)
 
     def features(self, colours: ArrayLike) -> Array:
         """(n, 3) linear sRGB → (n, 10): 1, the three of y, their squares and products."""
         y = self._whitened(colours)
         r = np.sqrt((y**2).sum(axis=1, keepdims=True))
-        a, b, c = (y * np.minimum(1, self.radius[0] / np.maximum(r, 1e-9))).T
+        a, b, c = (y * (1 + (r / self.radius[0]) ** 8) ** (-1 / 8)).T
         return np.stack([np.ones(len(y)), a, b, c, a * a, b * b, c * c, a * b, a * c, b * c], 1)
 
     def spread_features(self, colours: ArrayLike) -> Array:
         """(n, 3) linear sRGB → (n, 15): `features`, and hats over ITA° but the first."""
-        tone = ita(np.maximum(np.asarray(colours, dtype=np.float64), DARKEST))
+        tone = ita(np.maximum(np.asarray(colours, dtype=np.float64), 0.0))
         hats = [np.interp(tone, TONES, top) for top in np.eye(len(TONES))[1:]]
         return np.concatenate([self.features(colours), np.stack(hats, axis=1)], axis=1)
 
@@ -104,8 +105,12 @@ class SkinPrior:
         return confidence[:, None] * known + (1 - confidence[:, None]) * unknown, confidence
 
     def _whitened(self, colours: ArrayLike) -> Array:
-        rgb = np.asarray(colours, dtype=np.float64)
-        return (np.log(np.maximum(rgb, DARKEST)) - self.centre) @ self.whitening.T
+        return (log_colours(colours) - self.centre) @ self.whitening.T
+
+
+def log_colours(colours: ArrayLike) -> Array:
+    """(n, 3) linear sRGB → logarithms of it and DARK, float64; below 0 counts as 0."""
+    return np.log(np.maximum(np.asarray(colours, dtype=np.float64), 0.0) + DARK)
 
 
 def unit_slopes(coordinates: Array) -> Array:

@@ -25,7 +25,7 @@ from cutis.albedo import AlbedoSpace, albedo_space
 from cutis.albedo.sampled import SampledSpace
 from cutis.colour import ita, reflectance_to_rgb
 from cutis.inverse.fit import logit
-from cutis.inverse.prior import DARKEST, TOLERANCE, SkinPrior, unit_slopes
+from cutis.inverse.prior import TOLERANCE, SkinPrior, log_colours, unit_slopes
 from cutis.inverse.spectral_fit import SpectralFitter
 from cutis.optics import Tissue, from_coordinates, to_coordinates
 
@@ -106,7 +106,7 @@ def train_prior(
             progress(k + 1, FOLDS + 1)
     prior = learner.learn(np.arange(len(fitted)))
     terms, even = prior.spread_features(learner.colours), np.sqrt(learner.weights)
-    spreads = _quantiles(terms, rest, even / even.mean(), 0.9)
+    spreads = regression_quantiles(terms, rest, even / even.mean(), 0.9)
     spreads[0] -= np.log(NINETY)
     if progress:
         progress(FOLDS + 1, FOLDS + 1)
@@ -135,7 +135,7 @@ class _Learner:
     def learn(self, rows: NDArray[np.intp]) -> SkinPrior:
         """Means, precision and domain from some skins; spreads are 0."""
         u, w = self.fitted[rows], self.weights[rows] / self.weights[rows].sum()
-        logs = np.log(np.maximum(self.colours[rows].astype(np.float64), DARKEST))
+        logs = log_colours(self.colours[rows])
         centre = w @ logs
         covariance = ((logs - centre) * w[:, None]).T @ (logs - centre)
         whitening = np.linalg.inv(np.linalg.cholesky(covariance))
@@ -224,7 +224,7 @@ class _Learner:
         return np.asarray(np.abs(wrong) / unit_slopes(u))
 
 
-def _quantiles(terms: Array, values: Array, weights: Array, share: float) -> Array:
+def regression_quantiles(terms: Array, values: Array, weights: Array, share: float) -> Array:
     """(m, p) coefficients c such that `share` of values (n, p) lie below exp(terms (n, m) · c).
 
     The dual of the linear program whose minimum is the regression quantile of the logarithms.

@@ -14,6 +14,8 @@ from cutis.optics import PARAMETERS
 
 TRUST_CHART = Chart(MEASURED_CHART.low, MEASURED_CHART.high, (56, 40, 44))
 """σ varies slowly: half the cells of the skins along each axis."""
+WIDTHS = np.array([known.high - known.low for known in PARAMETERS], dtype=np.float32)
+"""Of the ranges of the parameters: ± 1.645 of them hold anything."""
 
 
 def trust_of(prior: SkinPrior, space: AlbedoSpace) -> Solver:
@@ -31,10 +33,10 @@ def trust_of(prior: SkinPrior, space: AlbedoSpace) -> Solver:
 def look_up_trust(table: Baked, colours: NDArray[np.float32]) -> NDArray[np.float32]:
     """(n, 3) calibrated linear sRGB → (n, 6): σ of the five in their units, and confidence.
 
-    No σ is wider than the range: at steep ends of a range, and far from skin, slopes promise more.
+    No σ is wider than its range, as in files: off measured skin the logarithms grow without bound.
     """
     found = table.values(colours)
-    widths = np.array([known.high - known.low for known in PARAMETERS], np.float32)
-    np.minimum(np.exp(found[:, :5]), widths, out=found[:, :5])
+    np.exp(found[:, :5], out=found[:, :5])
+    np.minimum(found[:, :5], WIDTHS, out=found[:, :5])
     np.clip(found[:, 5], 0, 1, out=found[:, 5])
     return found

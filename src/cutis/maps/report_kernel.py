@@ -81,8 +81,8 @@ def count_spread(
                     for _ in range(root[p] - 1):
                         slope *= base
                     slope *= root[p]
-                    even[p, min(int(sigma / slope * bins), bins - 1)] += 1
-                    share[p, min(int(sigma / width[p] * bins), bins - 1)] += 1
+                    even[p, max(min(int(sigma / slope * bins), bins - 1), 0)] += 1
+                    share[p, max(min(int(sigma / width[p] * bins), bins - 1), 0)] += 1
 
 
 @njit(parallel=True, cache=True)

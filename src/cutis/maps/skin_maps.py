@@ -149,7 +149,10 @@ class SkinMaps:
         """
         if name not in self.sigmas:
             parameter(name)
-            raise CutisError(f"these maps have no σ of {name}: {self.model} does not know it")
+            raise CutisError(
+                f"these maps have no σ of {name}: {self.model} does not know it, or they were made "
+                "without; estimate again"
+            )
         return self.sigmas[name]
 
     # editing --------------------------------------------------------------------------------

@@ -20,8 +20,9 @@ LARGEST_SHIFT = 30.0
 """nm that bands of a tissue may lie off their tables: from hexane to any lipid, with room."""
 
 CAROTENE_IN_DERMIS = 1 / 3
-"""Concentration of β-carotene in the dermis over that in the epidermis, where it is a parameter: as
-the constants of `ALIAGA2022`; the epidermis always holds more [vahlquist1982]."""
+"""Concentration of β-carotene in the dermis over that in the epidermis, where it is a parameter: an
+assumption. The epidermis always holds more [vahlquist1982]; a third is the ratio of the constants
+of `ALIAGA2022`, of which the second is per litre of blood."""
 
 
 @dataclass(frozen=True)
