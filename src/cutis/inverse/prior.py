@@ -1,9 +1,9 @@
 """What measured skins of a colour are like: the prior under which colours become skins.
 
-Of the colour c of an albedo, y(c) are the whitened logarithms of its red, green and blue, each with
-DARK added, and r their length; beyond the measured skins, r > `radius`, y is
-drawn back to it, as r (1 + (r / `radius`)⁸)^−⅛. With φ the ten terms
-of a quadratic in y, skins are expected at the logits z₀(c) = φ(y) · `means`, and
+Of the colour c of an albedo, y(c) are the whitened logarithms of its red, green and blue, each
+with DARK added, and r their length. Beyond the measured skins, r > `radius`, y is drawn back:
+its length becomes r (1 + (r / `radius`)⁸)^−⅛. With φ the ten terms of a quadratic in y, skins are
+expected at the logits z₀(c) = φ(y) · `means`, and
 
     minimise  |f(u) − c|² / s(c)² + (z − z₀)ᵀ P (z − z₀),     u = 1 / (1 + e^−z)
 
@@ -35,12 +35,13 @@ LOGIT = 6.0
 """Bound on the expected logits."""
 TOLERANCE = 0.001
 """Relative colour error worth one standard deviation of the prior (see `fit.py`)."""
-UNLIKE = 1.2
+UNLIKE = 1.1
 """Multiple of `radius` at which colours are half as likely to be skin."""
 OFF_GAMUT = 1.0
 """CIEDE2000 between a colour and that of its skin at which confidence is a half."""
-TONES = (-45.0, -10.0, 19.0, 34.0, 48.0, 60.0)
-"""ITA° at the tops of the hats: about the middles of the six bands."""
+TONES = (-47.0, -9.0, 13.0, 28.0, 40.0, 54.0)
+"""ITA° of albedo at the tops of the hats: medians of measured skins in the six bands, which are of
+ITA° with the surface."""
 BAND = 1 << 16
 """Colours fitted at a time."""
 

@@ -7,12 +7,13 @@ moved by Gauss–Newton to minimise
     Σ_skins w · RMS_λ (ρ + (1 − ρ) f(u(c), λ) − m(λ)),
 
 every band of ITA° weighing the same, with a weak pull to the skins that fit the whole spectra. The
-slope of u by the expectation is that of a fit that keeps the colour, I − K J, J being the slope of
-colour by logits and K = P⁻¹Jᵀ (J P⁻¹ Jᵀ + s²)⁻¹.
+slope of u by the expectation is, to first order, that of a fit that keeps the colour, I − K J, J
+being the slope of colour by logits and K = P⁻¹Jᵀ (J P⁻¹ Jᵀ + s²)⁻¹; steps that do not help are cut.
 
 Spreads are the ninth decile of |parameter − estimate|, over slope, as a function of the colour
 (`SkinPrior.spread_features`), by linear quantile regression of logarithms [koenker1978] on skins of
-subjects that were left out.
+subjects that were left out, weighted by the root of the weights above: bands that are nearly even,
+without a few skins of a rare one ruling.
 """
 
 from collections.abc import Callable
@@ -140,11 +141,10 @@ class _Learner:
         covariance = ((logs - centre) * w[:, None]).T @ (logs - centre)
         whitening = np.linalg.inv(np.linalg.cholesky(covariance))
         distance = np.sqrt((((logs - centre) @ whitening.T) ** 2).sum(axis=1))
-        order = np.argsort(distance)
-        outermost = np.searchsorted(np.cumsum(w[order]), INSIDE)
-        radius = distance[order][[outermost]]
+        radius = np.array([_quantile(distance, w, INSIDE)])
         mean = w @ u
-        sigma = np.sqrt(w @ (u - mean) ** 2)
+        away = np.abs(u - mean)
+        sigma = np.array([_quantile(column, w, 0.9) for column in away.T]) / NINETY
         means, spreads = np.zeros((10, 5)), np.zeros((15, 5))
         start = SkinPrior(centre, whitening, radius, means, np.eye(5), spreads, sigma)
         terms = start.features(self.colours[rows])
@@ -162,10 +162,10 @@ class _Learner:
     ) -> SkinPrior:
         """Moves the means to where the implied spectra are nearest to the measured ones."""
         start, damping, size = prior.means, 1e-3, prior.means.size
-        anchor = np.kron(terms.T @ (terms * w[:, None]), prior.precision)
         residual = self._residuals(prior, rows)
         rms = np.sqrt((residual**2).mean(axis=1))
-        cost = w @ rms
+        cost, pulled = w @ rms, 0.0
+        pull = PULL * cost * np.kron(terms.T @ (terms * w[:, None]), prior.precision)
         for _ in range(ITERATIONS):
             slope = self._slopes(prior, rows)
             weight = w / np.maximum(rms, 1e-3) / residual.shape[1]
@@ -174,7 +174,6 @@ class _Learner:
                 size, size
             )
             lever = np.einsum("nlp,nl,n->np", slope, residual, weight, optimize=True)
-            pull = PULL * cost * anchor
             gradient = (terms.T @ lever).ravel() + pull @ (prior.means - start).ravel()
             curve = curve + pull
             for _ in range(6):
@@ -183,13 +182,16 @@ class _Learner:
                 trial = replace(prior, means=prior.means - step)
                 new = self._residuals(trial, rows)
                 new_rms = np.sqrt((new**2).mean(axis=1))
-                gain = cost - w @ new_rms
+                moved = (trial.means - start).ravel()
+                new_pulled = 0.5 * moved @ pull @ moved
+                gain = cost + pulled - w @ new_rms - new_pulled
                 if gain > 0:
                     break
                 damping *= 6
             if gain <= 0:
                 break
-            prior, residual, rms, cost = trial, new, new_rms, cost - gain
+            prior, residual, rms = trial, new, new_rms
+            cost, pulled = w @ rms, new_pulled
             damping = max(damping * 0.2, 1e-6)
             if gain < CONVERGED * cost:
                 break
@@ -222,6 +224,13 @@ class _Learner:
         u = prior.skins(self.space, self.colours[rows]).astype(np.float64)
         wrong = from_coordinates(self.fitted[rows]) - from_coordinates(u)
         return np.asarray(np.abs(wrong) / unit_slopes(u))
+
+
+def _quantile(values: Array, weights: Array, share: float) -> float:
+    """The value below which `share` of the weights (sum 1) lie."""
+    order = np.argsort(values)
+    place = min(int(np.searchsorted(np.cumsum(weights[order]), share)), len(values) - 1)
+    return float(values[order[place]])
 
 
 def regression_quantiles(terms: Array, values: Array, weights: Array, share: float) -> Array:
