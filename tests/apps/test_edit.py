@@ -135,7 +135,7 @@ def test_rare_chromophores_are_kept_with_the_maps(maps, cutis, tmp_path):
     skin = load_maps(ill)
     assert skin.rare == ("bilirubin",)
     assert not skin.original.bilirubin.any()
-    assert "bilirubin: 0.04 to 0.04 g/L" in cutis("info", ill).out
+    assert "bilirubin: 0.04 g/L" in cutis("info", ill).out
     cutis("edit", maps, "--bilirubin", "0.04", "-o", once)
     assert digest(again) == digest(once)
     cutis("edit", ill, "--methaemoglobin", "0.2", "--bilirubin", "x0.5", "-o", again)

@@ -172,7 +172,7 @@ def test_percent_gaps_and_negative_values_are_announced(cutis, tmp_path, skins, 
     values = 100 * spectra
     values[0, 3], values[1, 4], values[2, 5] = np.nan, -0.2, 180.0
     ended = cutis("fit", write_columns(tmp_path / "a.csv", values))
-    for words in ("percent", "1 values are negative", "1 values are above 1.2", "1 values are mis"):
+    for words in ("percent", "1 value is negative", "1 value is above 1.2", "1 value is mis"):
         assert words in ended.err
     rows, found = read_skins(ended.out)
     assert [row["wavelengths"] for row in rows[:4]] == ["30", "30", "30", "31"]
@@ -270,7 +270,7 @@ def test_texels_without_spectrum_are_outside_the_mask(cutis, write_cube, tmp_pat
     values[9, 2] = 1e6
     path, arguments = write_cube("bil", values)
     ended = cutis("fit", path, *arguments, "-o", tmp_path / "face.skin.exr")
-    for words in ("percent", "3 texels without a spectrum", "1 values are above 1.2", "9 skins"):
+    for words in ("percent", "3 texels without a spectrum", "1 value is above 1.2", "9 skins"):
         assert words in ended.err
     channels, _ = read_channels(tmp_path / "face.skin.exr")
     mask = channels["mask"].ravel()

@@ -50,3 +50,10 @@ def test_lines():
     assert said[0] == "melanin: well known, ±20 %"
     assert said[-1].startswith("20 % of the mask have a colour that is hardly one of skin")
     assert len(list(lines(maps(0.9), 0.01))) == 4
+
+
+def test_shares_and_darkness_are_of_skin_and_not_of_hair_in_the_mask():
+    rows = {name: dict(row) for name, row in maps(0.1, melanin=0.5, sigma=0.002).items()}
+    rows["melanin"]["sure_median"] = 0.02
+    assert spread(rows, "melanin") == "±10 %"
+    assert known(rows, "blood")[1] == "hardly known"

@@ -153,3 +153,18 @@ def test_without_a_prior_any_value_was_as_likely():
 def test_statistics_of_nothing():
     assert TrustStatistics().finish("aliaga2022") == {}
     assert TrustStatistics().low_confidence() is None
+
+
+def test_medians_are_of_the_texels_that_are_likely_skin():
+    """Hair inside the mask changes neither σ nor the value that σ is a share of."""
+    values = np.array([[0.02] * 4 + [0.9] * 6], np.float32)
+    u = to_coordinates(np.full((1, 10, 5), 0.5)).astype(np.float32)
+    u[0, :, 0] = PARAMETERS[0].to_coordinate(values[0])
+    confidence = (values < 0.5).astype(np.float32)
+    statistics = TrustStatistics()
+    sigmas = {"melanin": np.where(values < 0.5, 0.002, 0.5).astype(np.float32)}
+    statistics.add(sigmas, confidence, u, np.ones((1, 10), bool))
+    found = statistics.finish("measured2026")["melanin"]
+    assert found["sure_median"] == pytest.approx(0.02, rel=1e-2)
+    assert found["sigma"] == pytest.approx(0.002, rel=1e-2)
+    assert statistics.low_confidence() == pytest.approx(0.6)

@@ -98,7 +98,7 @@ def fit_table(request: Request, correlations: bool = False) -> None:
         request.say(note)
     missing = int(np.isnan(values).sum()) - low - high
     if missing:
-        request.say(f"{missing} values are missing: the others of their spectra are fitted")
+        request.say(f"{_values(missing)} missing: the others of their spectra are fitted")
     fitter = request.fitter(table.wavelengths[inside])
     used = np.isfinite(values).sum(axis=1)
     free = int(fitter.free.sum())
@@ -236,10 +236,14 @@ def _joined(parts: Sequence[SpectralFit]) -> SpectralFit:
 def _left_out(low: int, high: int) -> list[str]:
     notes = []
     if low:
-        notes.append(f"{low} values are negative: left out")
+        notes.append(f"{_values(low)} negative: left out")
     if high:
-        notes.append(f"{high} values are above {HIGHEST:g}: left out")
+        notes.append(f"{_values(high)} above {HIGHEST:g}: left out")
     return notes
+
+
+def _values(number: int) -> str:
+    return "1 value is" if number == 1 else f"{number} values are"
 
 
 def _summary(found: SpectralFit, request: Request) -> str:

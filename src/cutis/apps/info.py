@@ -54,7 +54,8 @@ def info(maps: Annotated[Path, typer.Argument(help="Maps, NAME.skin.exr.")]) -> 
     )
     for name, (low, high) in ends.items():
         unit = parameter(name).unit.replace("1", "").strip()
-        out.print(f"{name}: {low:.4g} to {high:.4g} {unit}".rstrip())
+        span = f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"
+        out.print(f"{name}: {span} {unit}".rstrip())
     told = {
         name: {"unit": parameter(name).unit, "median": percentiles[name][1], **row}
         for name, row in known.items()

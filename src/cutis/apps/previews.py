@@ -13,7 +13,7 @@ from cutis.colour import delta_e
 from cutis.figures.layout import COLOUR_MAPS
 from cutis.inverse import Calibration
 from cutis.maps import SkinMaps
-from cutis.maps.trust import CONFIDENCE, SIGMA
+from cutis.maps.trust import CONFIDENCE, LOW, SIGMA
 from cutis.optics import PARAMETERS, Parameter
 from cutis.textures import replacing
 
@@ -103,17 +103,24 @@ class Previews:
 def _sheet(
     path: Path, sigmas: Sequence[Parameter], pictures: Mapping[str, NDArray[np.float32]]
 ) -> None:
-    """σ of the maps in a row, each with its scale below, from 0 to what 99 % stay below."""
+    """σ of the maps in a row, each with its scale below, from 0 to what 95 % stay below.
+
+    Of texels that are likely skin, where there are some: what little is known of hair and edges
+    would leave skin blank.
+    """
     from matplotlib.figure import Figure
 
     height, width = pictures[sigmas[0].name + SIGMA].shape
     cell = min(4.0, 4.0 * width / height)
     figure = Figure(figsize=(len(sigmas) * cell, cell * height / width + 0.9), dpi=100)
     rows = figure.subplots(1, len(sigmas), squeeze=False)[0]
+    confidence = pictures.get(CONFIDENCE)
+    sure = np.bool_(True) if confidence is None else confidence >= LOW
+    sure = sure if np.any(sure) else np.bool_(True)
     for axes, known in zip(rows, sigmas, strict=True):
         values = pictures[known.name + SIGMA]
-        seen = values[np.isfinite(values)]
-        high = float(np.percentile(seen, 99)) if seen.size else 1.0
+        seen = values[np.isfinite(values) & sure]
+        high = float(np.percentile(seen, 95)) if seen.size else 1.0
         step = max(1, values.shape[1] // 400)
         shown = axes.imshow(
             values[::step, ::step], cmap=COLOUR_MAPS[known.name], vmin=0, vmax=max(high, 1e-9),

@@ -21,7 +21,8 @@ UNSURE = 0.05
 """Share of texels with a low confidence that is worth a word."""
 
 Maps = Mapping[str, Mapping[str, Any]]
-"""By name what a report says of each map: `median`, `unit`, and `sigma`, `informed` if known."""
+"""By name what a report says of each map: `median`, `unit`, and if known `sigma`, `informed` and
+`sure_median`, all three over texels of a colour that is likely skin's."""
 
 
 def known(maps: Maps, name: str) -> tuple[str, str] | None:
@@ -33,7 +34,7 @@ def known(maps: Maps, name: str) -> tuple[str, str] | None:
         return "good", "well known"
     if informed >= ROUGHLY:
         return "care", "roughly known"
-    if name in BELOW and maps.get("melanin", {}).get("median", 0) >= DARK:
+    if name in BELOW and _middle(maps.get("melanin", {})) >= DARK:
         return "doubt", "hidden by melanin on this face"
     return "doubt", "hardly known"
 
@@ -41,11 +42,16 @@ def known(maps: Maps, name: str) -> tuple[str, str] | None:
 def spread(maps: Maps, name: str) -> str:
     """Median σ of a map as ± so much, relative for FRACTIONS: "±8 %", "±22 µm"."""
     row = maps[name]
-    sigma, unit = row["sigma"], row["unit"]
-    if name in FRACTIONS and row.get("median"):
-        share = 100 * sigma / row["median"]
+    sigma, unit, middle = row["sigma"], row["unit"], _middle(row)
+    if name in FRACTIONS and middle:
+        share = 100 * sigma / middle
         return f"±{share:.0f} %" if share < 100 else "± more than its value"
     return f"±{sigma:.2g}" + ("" if unit == "1" else f" {unit}")
+
+
+def _middle(row: Mapping[str, Any]) -> float:
+    """Median over the texels that σ is of; hair in a mask has no part in it."""
+    return float(row.get("sure_median", row.get("median", 0)) or 0)
 
 
 def lines(maps: Maps, low_confidence: float | None) -> Iterator[str]:

@@ -101,9 +101,13 @@ class SpectralFitter:
         if not self.free.any():
             raise CutisError("every parameter is held; leave one free to fit")
         if len(np.unique(self.sampled.wavelengths)) < self.free.sum():
+            loose = [
+                known.name for known, free in zip(tissue.parameters, self.free, strict=True) if free
+            ]
+            example = "oxygenation" if "oxygenation" in loose else loose[-1]
             raise CutisError(
                 f"{len(np.unique(self.sampled.wavelengths))} wavelengths are too few for "
-                f"{self.free.sum()} free parameters; hold some of them, oxygenation for one"
+                f"{self.free.sum()} free parameters; hold some of them, {example} for one"
             )
         self._library, self._spectra, self._part = self._make_library()
 

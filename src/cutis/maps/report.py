@@ -109,8 +109,9 @@ def report(skin: SkinMaps) -> dict[str, Any]:
     colour that is no albedo. Percentiles are read from histograms of 65 536 bins and more;
     `clamped` is the share of texels at an end of a map's range, `histogram` 64 bars for people.
     Where the model knows σ, `low_confidence` is the share of the mask with a confidence below 0.5,
-    and over the rest maps have `sigma`, the median in their unit, and `informed`: 1 − σ / σ of the
-    prior in network coordinates, 1 where all is known and 0 where the colour said nothing.
+    and over the rest maps have `sigma` and `sure_median`, the medians of σ and of the map, and
+    `informed`: 1 − σ / σ of the prior in network coordinates, 1 where all is known and 0 where the
+    colour said nothing.
     """
     running = Report(skin, skin.shape)
     running.add(skin)

@@ -48,6 +48,7 @@ class TrustStatistics:
         self._names: set[str] = set()
         self._even = np.zeros((len(NAMES), BINS), dtype=np.int64)
         self._share = np.zeros((len(NAMES), BINS), dtype=np.int64)
+        self._values = np.zeros((len(NAMES), BINS), dtype=np.int64)
         self._inside = self._unsure = 0
 
     def add(
@@ -58,7 +59,7 @@ class TrustStatistics:
         inside: NDArray[np.bool_],
     ) -> None:
         """The next rows (h, W): σ by name, confidence, coordinates (h, W, 5), where the mask is."""
-        from cutis.maps.report_kernel import count_spread
+        from cutis.maps.report_kernel import count, count_spread
 
         if not sigmas:
             return
@@ -73,6 +74,7 @@ class TrustStatistics:
         span = np.array([p.high ** (1 / p.root) for p in PARAMETERS]) - low
         width = np.array([p.high - p.low for p in PARAMETERS])
         count_spread(spreads, u, sure, root, low, span, width, self._even, self._share)
+        count(u, sure, self._values)
 
     def low_confidence(self) -> float | None:
         """Share of the texels whose colour is rather not one of skin; None without σ."""
@@ -81,7 +83,8 @@ class TrustStatistics:
     def finish(self, model: str) -> dict[str, dict[str, float]]:
         """For each map with σ its median in the map's unit and how far the map is `informed`.
 
-        Empty where no texel is confident.
+        `sure_median` is that of the map itself over the same texels, which σ is a share of: hair
+        inside a mask has no part in either. Empty where no texel is confident.
         """
         if self._inside == self._unsure:
             return {}
@@ -91,7 +94,9 @@ class TrustStatistics:
                 share, even = (
                     (quantile(counts[i], 0.5) + 0.5) / BINS for counts in (self._share, self._even)
                 )
+                middle = (quantile(self._values[i], 0.5) + 0.5) / BINS
                 found[known.name] = {
+                    "sure_median": float(known.from_coordinate(middle)),
                     "sigma": share * (known.high - known.low),
                     "informed": max(0.0, 1 - even / prior[i]),
                 }
