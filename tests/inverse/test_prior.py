@@ -75,7 +75,7 @@ def test_expectation_stays_at_the_edge_of_measured_colours(prior):
 def test_likeness_falls_away_from_measured_colours(prior):
     middle = (np.exp(prior.centre) - DARK)[None]
     assert prior.likeness(middle)[0] == pytest.approx(1)
-    odd = np.array([[0.05, 0.05, 0.9], [0.0, 0.6, 0.0], [0.3, 0.3, 0.3]])
+    odd = np.array([[0.05, 0.05, 0.9], [0.0, 0.6, 0.0], [0.1, 0.1, 0.1]])
     assert prior.likeness(odd).max() < 0.1
 
 

