@@ -76,8 +76,8 @@ class Model:
     def trust(self, rgb: ArrayLike) -> NDArray[np.float32] | None:
         """(..., 3) calibrated linear sRGB → (..., 6): σ of the five parameters, and confidence.
 
-        σ is in the parameter's unit: the skin's own value lies within ± 1.645 σ for nine of ten
-        skins. None where the model does not know.
+        σ is in the parameter's unit: what a fit to the whole spectrum of a skin finds lies within
+        ± 1.645 σ for nine of ten skins. None where the model does not know.
         """
         return None if self.to_trust is None else _in_bands(self.to_trust, rgb, 6)
 
