@@ -144,8 +144,8 @@ class SkinMaps:
         """(H, W) standard deviation of a map in its unit, 0 off the mask: `skin.sigma("melanin")`.
 
         What a fit to the whole spectrum finds lies within ± 1.645 σ for nine of ten skins
-        (docs/validation.md). Edits carry it on: a factor scales it, an offset leaves it, a set value has 0. Raises CutisError
-        for maps without: only some models know it.
+        (docs/validation.md). Edits carry it on: a factor scales it, an offset leaves it, a set
+        value has 0. Raises CutisError for maps without: only some models know it.
         """
         if name not in self.sigmas:
             parameter(name)
