@@ -500,3 +500,9 @@ def test_identity_of_a_png_that_says_its_space(tmp_path, make, random, chunk):
     assert read_texture(tmp_path / "b.png").space == SRGB
     write_texture(one, tmp_path / "b.tif")
     assert read_texture(tmp_path / "b.tif").space == one.space
+
+
+def test_an_array_is_no_texture(tmp_path):
+    with pytest.raises(CutisError, match="with_linear"):
+        write_texture(np.zeros((4, 4, 3), np.float32), tmp_path / "out.png")
+    assert not list(tmp_path.iterdir())

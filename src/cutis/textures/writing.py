@@ -10,6 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from cutis.colour.spaces import SRGB, Space
+from cutis.errors import CutisError
 from cutis.textures.encoding import Encoder, encoder
 from cutis.textures.icc import IccSpace
 from cutis.textures.problem import problem
@@ -74,9 +75,14 @@ def write_texture(
     Of an OpenEXR file of several parts only the first was read, so only that is written. EXIF of
     the camera survives in JPEG and PNG, not in TIFF, where OpenImageIO does not reach it.
 
-    Raises CutisError, one line that names the file, for an unknown extension or a failed write;
-    a file that was there is then untouched.
+    Raises CutisError, one line that names the file, for an unknown extension or a failed write (a
+    file that was there is then untouched), and for what is no texture.
     """
+    if not isinstance(texture, Texture):
+        raise CutisError(
+            "only a texture can be written; put an array of linear sRGB into the one that it came "
+            "from: face.with_linear(array, mask > 0)"
+        )
     with texture_writer(path, texture, space) as writer:
         for rows in bands(texture.shape):
             writer.write(texture.rows(rows))
