@@ -116,12 +116,8 @@ def log_colours(colours: ArrayLike) -> Array:
 
 def unit_slopes(coordinates: Array) -> Array:
     """(n, 5) slopes of parameters, in their units, by coordinates."""
-    slopes = np.empty_like(coordinates)
-    for i, known in enumerate(PARAMETERS):
-        low, high = known.low ** (1 / known.root), known.high ** (1 / known.root)
-        root = low + coordinates[:, i] * (high - low)
-        slopes[:, i] = known.root * root ** (known.root - 1) * (high - low)
-    return slopes
+    slopes = [known.slope(coordinates[:, i]) for i, known in enumerate(PARAMETERS)]
+    return np.stack(slopes, axis=1)
 
 
 def save_prior(prior: SkinPrior, file: Path) -> None:

@@ -215,12 +215,7 @@ class SpectralFitter:
         inner = matrices[:, free][:, :, free] / scale[:, None, None]
         inner += UNKNOWN * np.eye(len(free))
         inverse = np.linalg.inv(inner)
-        slope = np.empty((len(u), len(free)))
-        for column, i in enumerate(free):
-            p = self._parameters[i]
-            low, high = p.low ** (1 / p.root), p.high ** (1 / p.root)
-            slope[:, column] = p.root * (low + u[:, i] * (high - low)) ** (p.root - 1)
-            slope[:, column] *= high - low
+        slope = np.stack([self._parameters[i].slope(u[:, i]) for i in free], axis=1)
         whole = np.zeros((len(u), len(self._parameters), len(self._parameters)))
         whole[:, free[:, None], free] = inverse * slope[:, :, None] * slope[:, None, :]
         return whole

@@ -38,6 +38,12 @@ class Parameter:
         value = (low + u * (high - low)) ** self.root
         return np.clip(value, self.low, self.high)
 
+    def slope(self, coordinate: ArrayLike) -> NDArray[np.floating]:
+        """∂parameter/∂u, in its unit, at coordinates u ∈ [0, 1]; any shape."""
+        low, high = self.low ** (1 / self.root), self.high ** (1 / self.root)
+        root = low + np.asarray(coordinate) * (high - low)
+        return self.root * root ** (self.root - 1) * (high - low)
+
     def check(self, value: float) -> float:
         """Returns `value`, or raises CutisError when it is not a number inside the range."""
         if not self.low <= value <= self.high:  # also catches NaN
