@@ -62,8 +62,8 @@ def test_ends_of_the_ranges_too(tissue):
 
 @pytest.mark.shared
 def test_faces_decode_as_by_the_exact_space(shared_data):
-    from cutis.figures.subjects import every_face
     from cutis.inverse import load_model
+    from studies.figures.subjects import every_face
 
     count = 0
     for name, colours in every_face(shared_data, 4000):

@@ -7,8 +7,8 @@ from cutis.albedo import albedo_space
 from cutis.albedo.lights import LIKELY, skin_conversion
 from cutis.colour import delta_e, light_conversion, reflectance_to_rgb
 from cutis.errors import CutisError
-from cutis.figures.measured import BANDS, measured_skins
 from cutis.optics import ALIAGA2022, MEASURED2026
+from studies.figures.measured import BANDS, measured_skins
 
 LIGHTS = ("A", "D50", "FL2", "FL11", "LED-B3", "LED-RGB1")
 

@@ -62,7 +62,7 @@ def test_the_table_against_the_solver(tissue):
 
 @BOTH
 def test_it_ships_and_is_of_this_tissue(tissue):
-    """Else it is built when it is first needed: run tools/build_albedo_table.py."""
+    """Else it is built when it is first needed: run studies/build_albedo_table.py."""
     rare = with_rare_chromophores(tissue)
     file = resources.files("cutis.data").joinpath("albedo", table_file(rare))
     with file.open("rb") as stored:

@@ -69,7 +69,7 @@ def test_twenty_thousand_skins():
 
 
 def test_against_more_directions():
-    """The same for 41 × 4³ albedos and 48 directions (tools/albedo_accuracy.py does 53 136)."""
+    """The same for 41 × 4³ albedos and 48 directions (studies/albedo_accuracy.py does 53 136)."""
     assert worst_errors(albedo_space(), blocks=1, size=4, seed=1, count=48).max() < 1e-5
 
 

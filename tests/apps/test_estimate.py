@@ -9,8 +9,9 @@ from PIL import Image
 import cutis as package
 from cutis.inverse import load_model
 from cutis.inverse.models import DEFAULT
-from cutis.maps import estimate, load_maps, report
+from cutis.maps import estimate, load_maps
 from cutis.optics import NAMES
+from cutis.report import report
 from cutis.textures import read_channels
 
 MAPS = [f"face.{name}.png" for name in NAMES]

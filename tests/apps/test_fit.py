@@ -250,7 +250,7 @@ def write_cube(write_envi, tmp_path, spectra):
 
 @pytest.mark.parametrize("kind", ["exr", "npy", "bsq", "bil", "bip"])
 def test_cubes_become_maps(cutis, write_cube, tmp_path, monkeypatch, skins, kind):
-    monkeypatch.setattr("cutis.textures.spectral_cube.TEXELS", 4)  # a row at a time
+    monkeypatch.setattr("cutis.spectra.spectral_cube.TEXELS", 4)  # a row at a time
     path, arguments = write_cube(kind)
     ended = cutis("fit", path, *arguments, "-o", tmp_path / "face.skin.exr")
     assert ended.code == 0, ended.err

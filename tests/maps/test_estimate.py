@@ -8,8 +8,9 @@ import pytest
 import cutis
 from cutis.errors import CutisError
 from cutis.inverse import MODELS, load_model
-from cutis.maps import estimate, report
+from cutis.maps import estimate
 from cutis.optics import NAMES
+from cutis.report import report
 
 
 @pytest.mark.parametrize("model", MODELS)

@@ -5,8 +5,9 @@ import pytest
 
 from cutis.albedo import albedo_space
 from cutis.colour import LINEAR, delta_e, light_conversion, reflectance_to_rgb
-from cutis.maps import estimate, load_maps, report
+from cutis.maps import estimate, load_maps
 from cutis.optics import WAVELENGTHS
+from cutis.report import report
 from cutis.textures import Texture
 
 SKIN = np.array([0.03, 0.025, 90.0, 0.6, 0.75])

@@ -9,8 +9,8 @@ from cutis.albedo.rare import rare_ratio
 from cutis.colour import reflectance_to_rgb
 from cutis.errors import CutisError
 from cutis.inverse.models import Model, load_model
+from cutis.luts.recolouring import recolouring
 from cutis.maps import Edit, estimate, load_maps, presets, save_maps
-from cutis.maps.recolouring import recolouring
 from cutis.maps.relighting import STEEPEST
 from cutis.optics import ALIAGA2022, MEASURED2026, NAMES, RARE_NAMES, WAVELENGTHS
 from cutis.textures import read_channels

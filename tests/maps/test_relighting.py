@@ -8,12 +8,12 @@ import pytest
 from cutis.albedo import albedo_space
 from cutis.colour import LINEAR, delta_e, light_conversion, reflectance_to_rgb
 from cutis.errors import CutisError
-from cutis.figures.measured import BANDS, SURFACE, measured_skins
 from cutis.inverse import calibrate, fit_spectra
 from cutis.inverse.models import DEFAULT
 from cutis.maps import SkinMaps, estimate
 from cutis.optics import MEASURED2026, NAMES, WAVELENGTHS
 from cutis.textures import Texture
+from studies.figures.measured import BANDS, SURFACE, measured_skins
 
 
 @pytest.fixture

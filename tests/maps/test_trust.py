@@ -8,9 +8,10 @@ import pytest
 
 from cutis.errors import CutisError
 from cutis.inverse import load_model
-from cutis.maps import Edit, estimate, load_maps, report
+from cutis.maps import Edit, estimate, load_maps
 from cutis.maps.trust import EVEN, TrustStatistics, prior_sigma
 from cutis.optics import NAMES, PARAMETERS, to_coordinates
+from cutis.report import report
 from cutis.textures import read_channels, write_channels
 
 

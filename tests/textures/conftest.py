@@ -179,6 +179,6 @@ def icc():
 def measured_rgb(shared_data):
     """(n, 3) linear sRGB of measured skins, float32."""
     from cutis.colour import reflectance_to_rgb
-    from cutis.figures.measured import BANDS, measured_skins
+    from studies.figures.measured import BANDS, measured_skins
 
     return reflectance_to_rgb(measured_skins(shared_data), BANDS).astype(np.float32)

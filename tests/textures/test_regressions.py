@@ -1,7 +1,7 @@
 """Files that once went wrong: that crashed, printed, took memory, or came as what they are not.
 
-`tools/fuzz_textures.py` found most of them; what it finds next belongs here too. The first part of
-a name is the format.
+`studies/fuzz_textures.py` found most of them; what it finds next belongs here too. The first part
+of a name is the format.
 """
 
 from pathlib import Path

@@ -1,6 +1,6 @@
 """The walk against the exact solver over the whole albedo space, and against published numbers.
 
-Levels were fixed before the first run. More photons per skin: tools/monte_carlo_accuracy.py.
+Levels were fixed before the first run. More photons per skin: studies/monte_carlo_accuracy.py.
 """
 
 import numpy as np

@@ -7,7 +7,7 @@ RGB of all skins is, to 0.01 ΔE00, a sum of sixteen products of what is above a
 Factors are those of a singular value decomposition of the exact space at Chebyshev nodes, skins
 weighted by 1 / (mean albedo + 0.01) as eyes weight them, and become uniform quadratic B-splines
 over p^¼ of melanin and of blood, t / (t + 60 µm), and the shares themselves. `AlbedoSpace.rgb` is
-the exact form. Errors: docs/albedo.md; built by tools/build_albedo_table.py.
+the exact form. Errors: docs/albedo.md; built by studies/build_albedo_table.py.
 """
 
 from dataclasses import dataclass

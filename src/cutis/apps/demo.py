@@ -24,12 +24,12 @@ def demo(
     """
     from cutis.apps import estimate
     from cutis.apps.console import out, steps
-    from cutis.apps.edit_file import Job, edit_file
-    from cutis.apps.estimate_file import Settings, Task, calibrated, estimate_and_show
-    from cutis.apps.page import write_report
-    from cutis.apps.previews import reduced
     from cutis.errors import CutisError
+    from cutis.jobs.edit import Job, edit_file
+    from cutis.jobs.estimate import Settings, Task, calibrated, estimate_and_show
     from cutis.maps import presets
+    from cutis.report.page import write_report
+    from cutis.report.previews import reduced
     from cutis.textures import read_texture
 
     examples = Path(__file__).parents[3] / "examples"

@@ -51,9 +51,9 @@ def edit(
     Example: cutis edit out/face.skin.exr --illuminant A -o bulb.png
     """
     from cutis.apps.console import out, steps
-    from cutis.apps.edit_file import Job, edit_file
     from cutis.colour import light_conversion
     from cutis.errors import CutisError
+    from cutis.jobs.edit import Job, edit_file
     from cutis.textures import colour_space, format_of
     from cutis.textures.udim import TOKEN, tile_of, udim_tiles
 

@@ -9,7 +9,7 @@ import typer
 from cutis.apps import options
 
 if TYPE_CHECKING:
-    from cutis.apps.batch import Outcome, Runner
+    from cutis.jobs.sets import Outcome, Runner
 
 
 def estimate(
@@ -69,14 +69,14 @@ def estimate(
 
     Example: cutis estimate show/ '*.exr' --jobs 4 -o out/
     """
-    from cutis.apps.batch import cluster as on_cluster
-    from cutis.apps.batch import estimate_sets, here, processes
     from cutis.apps.console import out, steps
-    from cutis.apps.estimate_file import Settings, Task
-    from cutis.apps.inputs import capture_sets, companion, gaps, odd_ones
     from cutis.colour import light_conversion
     from cutis.errors import CutisError
     from cutis.inverse import load_model, model_name
+    from cutis.jobs.estimate import Settings, Task
+    from cutis.jobs.inputs import capture_sets, companion, gaps, odd_ones
+    from cutis.jobs.sets import cluster as on_cluster
+    from cutis.jobs.sets import estimate_sets, here, processes
     from cutis.textures import colour_space
     from cutis.textures.ocio import configured
 
@@ -159,7 +159,7 @@ def say_all(found: Sequence["Outcome"], output: Path) -> None:
 def say(results: dict[str, Any], white: str = "none") -> None:
     """Prints what was found in one capture."""
     from cutis.apps.console import out, print_statistics
-    from cutis.apps.trust_words import lines
+    from cutis.report.trust_words import lines
 
     gains = ", ".join(f"{g:.3f}" for g in results["calibration"]["gains"])
     light = results["calibration"]["illuminant"]

@@ -94,7 +94,8 @@ def _edit(
 ) -> str:
     from cutis.errors import CutisError
     from cutis.inverse import Calibration
-    from cutis.maps import MapsFile, export_lut
+    from cutis.luts import export_lut
+    from cutis.maps import MapsFile
     from cutis.textures import colour_space
 
     if not edits:

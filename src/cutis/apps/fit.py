@@ -75,7 +75,7 @@ def fit(
 
     Example: cutis fit spectra.csv --specular 0.028 --range 400,700 -o skins.csv
     """
-    from cutis.apps.fit_file import Request, fit_cube, fit_table
+    from cutis.jobs.fit import Request, fit_cube, fit_table
 
     flags = {
         "melanin": melanin,

@@ -16,11 +16,11 @@ def info(maps: Annotated[Path, typer.Argument(help="Maps, NAME.skin.exr.")]) -> 
     import numpy as np
 
     from cutis.apps.console import out, print_statistics
-    from cutis.apps.trust_words import lines
     from cutis.maps import MapsFile
     from cutis.maps.statistics import MapStatistics
     from cutis.maps.trust import TrustStatistics
     from cutis.optics import parameter
+    from cutis.report.trust_words import lines
 
     with MapsFile(maps) as file:
         found, trust, inside = MapStatistics(), TrustStatistics(), 0

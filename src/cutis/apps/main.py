@@ -12,7 +12,6 @@ from cutis.apps import (
     edit,
     estimate,
     export,
-    figures,
     fit,
     info,
     render,
@@ -60,7 +59,6 @@ app.command("export")(export.export)
 app.command("spectrum")(spectrum.spectrum)
 app.command("fit")(fit.fit)
 app.command("simulate")(simulate.simulate)
-app.command("figures")(figures.figures)
 app.command("info")(info.info)
 app.command("train")(train.train)
 app.command("bench")(bench.bench)

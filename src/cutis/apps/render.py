@@ -108,8 +108,8 @@ def render(
     from dataclasses import replace
 
     from cutis.apps.console import out, steps
-    from cutis.apps.pictures import RADII, Order, check_fit, export_to, render_pictures
     from cutis.errors import CutisError
+    from cutis.jobs.render import RADII, Order, check_fit, export_to, render_pictures
     from cutis.render.blender import find_blender
     from cutis.render.blender_install import install as install_blender
     from cutis.render.frames import Frame

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from cutis.apps.journal import Simulation
+    from cutis.jobs.journal import Simulation
 
 MOST_CHECKED = 100_000
 """Skins that are compared with the exact solver."""
@@ -68,9 +68,9 @@ def simulate(
 
     from cutis.albedo import SkinSimulation, TensorSimulation, Walks, grid_skins, halton
     from cutis.apps.console import out
-    from cutis.apps.journal import Journal
     from cutis.apps.spectrum import read_skins
     from cutis.errors import CutisError
+    from cutis.jobs.journal import Journal
     from cutis.optics import ALIAGA2022, NAMES, skin
 
     flags = dict(zip(NAMES, (melanin, blood, thickness, eumelanin, oxygenation), strict=True))
@@ -125,9 +125,9 @@ def _run(
     simulation: "Simulation", journal: Any, device: str, cluster: str | None, quiet: bool
 ) -> None:
     """Computes what is missing, here or on a cluster."""
-    from cutis.apps.cluster import on_cluster
     from cutis.apps.console import out, steps
     from cutis.errors import CutisError
+    from cutis.jobs.cluster import on_cluster
 
     missing = journal.missing()
     done = journal.count - len(missing)
@@ -162,8 +162,8 @@ def _write(
 ) -> None:
     import numpy as np
 
-    from cutis.apps.journal import settings
     from cutis.colour import reflectance_to_rgb
+    from cutis.jobs.journal import settings
     from cutis.optics import NAMES, WAVELENGTHS
     from cutis.textures import replacing
 

@@ -13,23 +13,17 @@ from cutis.maps.files import (
     save_maps,
     source_note,
 )
-from cutis.maps.lut_export import export_lut
-from cutis.maps.regions import Regions
-from cutis.maps.report import Report, report
 from cutis.maps.sampler import Sampler
 from cutis.maps.skin_maps import SkinMaps
 
 __all__ = [
     "Edit",
     "MapsFile",
-    "Regions",
-    "Report",
     "Sampler",
     "SkinMaps",
     "blank",
     "estimate",
     "estimate_rows",
-    "export_lut",
     "find_source",
     "load_maps",
     "load_skin",
@@ -37,7 +31,6 @@ __all__ = [
     "open_source",
     "parse_edit",
     "presets",
-    "report",
     "save_maps",
     "source_note",
 ]

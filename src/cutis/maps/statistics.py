@@ -18,7 +18,7 @@ def coordinates(
     maps: Sequence[NDArray[np.float32]], where: NDArray[np.bool_]
 ) -> NDArray[np.float32]:
     """Network coordinates (h, W, 5) of the five maps (h, W) where `where` is True, else 0."""
-    from cutis.maps.report_kernel import coordinates as fill
+    from cutis.maps.statistics_kernel import coordinates as fill
 
     root = np.array([p.root for p in PARAMETERS])
     low = np.array([p.low ** (1 / p.root) for p in PARAMETERS])
@@ -72,7 +72,7 @@ class MapStatistics:
 
     def add(self, u: NDArray[np.float32], where: NDArray[np.bool_]) -> None:
         """Counts coordinates (h, W, 5) where `where` (h, W) is True."""
-        from cutis.maps.report_kernel import count
+        from cutis.maps.statistics_kernel import count
 
         count(u, where, self.counts)
 

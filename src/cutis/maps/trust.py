@@ -59,7 +59,7 @@ class TrustStatistics:
         inside: NDArray[np.bool_],
     ) -> None:
         """The next rows (h, W): σ by name, confidence, coordinates (h, W, 5), where the mask is."""
-        from cutis.maps.report_kernel import count, count_spread
+        from cutis.maps.statistics_kernel import count, count_spread
 
         if not sigmas:
             return

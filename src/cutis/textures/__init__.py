@@ -2,26 +2,21 @@
 
 from cutis.textures.atomic import replacing, sweep
 from cutis.textures.channels import ChannelFile, channel_writer, read_channels, write_channels
-from cutis.textures.cube_files import open_cube
-from cutis.textures.lut_files import write_clf, write_cube
 from cutis.textures.mask import MaskFile, read_mask
 from cutis.textures.reading import TextureFile, read_texture
 from cutis.textures.spaces import colour_space
-from cutis.textures.spectral_cube import SpectralCube
 from cutis.textures.texture import Texture, bands
 from cutis.textures.writing import format_of, texture_writer, write_texture
 
 __all__ = [
     "ChannelFile",
     "MaskFile",
-    "SpectralCube",
     "Texture",
     "TextureFile",
     "bands",
     "channel_writer",
     "colour_space",
     "format_of",
-    "open_cube",
     "read_channels",
     "read_mask",
     "read_texture",
@@ -29,7 +24,5 @@ __all__ = [
     "sweep",
     "texture_writer",
     "write_channels",
-    "write_clf",
-    "write_cube",
     "write_texture",
 ]

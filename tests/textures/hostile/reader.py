@@ -249,9 +249,9 @@ def _serve(how: str) -> None:
     import cutis.textures
 
     if how == "estimate":
-        import cutis.apps.estimate_file
         import cutis.apps.main
         import cutis.inverse
+        import cutis.jobs.estimate
 
         cutis.inverse.load_model("default")  # imported, nothing run: a fork cannot take threads on
     read = _read if how == "read" else _estimate

@@ -1,0 +1,1 @@
+"""Work: one value per job, sets of captures, and where they run."""

@@ -1,0 +1,57 @@
+"""An edit into a LUT file that other programs load: .cube or .clf by its extension."""
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from cutis.errors import CutisError
+from cutis.inverse.calibration import Calibration
+from cutis.inverse.models import tissue_of
+from cutis.luts import lut_files
+from cutis.luts.clf_lut import OFFSET, skin_lut
+from cutis.luts.cube_lut import Space, edit_lut
+from cutis.luts.recolouring import recolouring, title
+from cutis.maps.edits import Edit
+
+
+def export_lut(
+    path: str | os.PathLike[str],
+    edits: Sequence[Edit],
+    space: Space,
+    size: int = 65,
+    *,
+    model: str = "default",
+    calibration: Calibration | None = None,
+    amount: float = 1.0,
+) -> str:
+    """Writes the LUT of edits for albedos stored in `space`; returns its title.
+
+    `size` is the number of nodes along a side; `calibration` that of the captures it will be used
+    on. Raises CutisError for other extensions, sizes out of range, edits that depend on the place.
+    """
+    kind = Path(path).suffix.lower()
+    if kind not in lut_files.FORMATS:
+        raise CutisError(f"{path}: a LUT is written as .cube or .clf; end its name so")
+    edit = recolouring(edits, model, calibration, amount)
+    text = f"{title(edits, amount)}, for {space.name}"
+    if kind == ".cube":
+        plain = edit_lut(edit, size, space)
+        lut_files.write_cube(path, plain.table, plain.shaper, text)
+        return text
+    lut = skin_lut(edit, size, space, calibration, tissue_of(model))
+    undone = np.linalg.inv(lut.matrix)
+    operators = [
+        lut_files.logarithm(OFFSET),
+        lut_files.matrix(lut.matrix, lut.shift),
+        lut_files.curves(lut.spread),
+        lut_files.grid(lut.table),
+        lut_files.curves(lut.gather),
+        lut_files.matrix(undone, -undone @ lut.shift),
+        lut_files.logarithm(OFFSET, inverse=True),
+    ]
+    if lut.encoded:
+        operators = [lut_files.srgb_curve(), *operators, lut_files.srgb_curve(inverse=True)]
+    lut_files.write_clf(path, operators, text)
+    return text
