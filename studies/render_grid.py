@@ -2,7 +2,7 @@
 
 Six skins, light to dark, as they are and with six edits of blood and melanin, under three lights:
 126 pictures. A run that was stopped goes on where it was (pictures are kept in build/renders).
-Needs Blender: `make blender`.
+Needs Blender: `make setup-render`.
 """
 
 import argparse
