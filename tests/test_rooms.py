@@ -31,6 +31,7 @@ SHARED = {"errors"}
 SLOW = {
     "torch": {"inverse.training"},
     "colour": set(),
+    "jinja2": set(),
     "matplotlib": set(),
     "onnx": set(),
     "onnxruntime": set(),

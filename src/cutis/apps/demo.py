@@ -47,6 +47,6 @@ def demo(
         notes = ["Edited: tanned, melanin +40 %, all of it pheomelanin.", CREDIT]
         write_report(output / "index.html", results, pictures, CAPTURE, notes)
     if not quiet:
-        estimate.say(results, "auto")
+        estimate.say(results, task.face, task.stem)
         out.print(f"wrote the tanned face to {tanned}")
         out.print(f"open {output / 'index.html'}")

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -10,6 +10,7 @@ from cutis.apps import options
 
 if TYPE_CHECKING:
     from cutis.jobs.sets import Outcome, Runner
+    from cutis.report import Report
 
 
 def estimate(
@@ -124,8 +125,8 @@ def estimate(
                 out.print(line)
         if alone:
             assert found[0].report is not None
-            say(found[0].report, white)
             out.print(f"wrote {sets[0][0].stem}.skin.exr and what belongs to it")
+            say(found[0].report, sets[0][0].face, sets[0][0].stem)
         else:
             say_all(found, output)
     if failed:
@@ -141,60 +142,24 @@ def _line(outcome: "Outcome") -> str:
 def say_all(found: Sequence["Outcome"], output: Path) -> None:
     """Prints a line for each capture of many."""
     from cutis.apps.console import out
+    from cutis.report.summary import line
 
     for outcome in found:
         if outcome.report is not None:
-            colour = outcome.report.get("colour")
-            error = "no skin colours" if colour is None else (
-                f"ΔE00 {colour['delta_e_mean']:.3f}, "
-                f"out of gamut {100 * colour['out_of_gamut']:.1f} %"
-            )  # fmt: skip
-            out.print(f"{outcome.face.name}: {error}")
+            out.print(f"{outcome.face.name}: {line(outcome.report)}")
     done = sum(outcome.report is not None for outcome in found)
     skipped = sum(outcome.skipped for outcome in found)
     left = f", {skipped} were there already" if skipped else ""
     out.print(f"{done} of {len(found)} estimated into {output}{left}")
 
 
-def say(results: dict[str, Any], white: str = "none") -> None:
-    """Prints what was found in one capture."""
+def say(report: "Report", face: Path, stem: Path) -> None:
+    """Prints what was found in one capture, whose results are called `stem`."""
     from cutis.apps.console import out, print_statistics
-    from cutis.report.trust_words import lines
+    from cutis.report import summary
 
-    gains = ", ".join(f"{g:.3f}" for g in results["calibration"]["gains"])
-    light = results["calibration"]["illuminant"]
-    out.print(f"colour space: {results['colorspace']}")
-    out.print(
-        f"gains {gains} ({results['calibration']['origin']}), model {results['model']}"
-        + (f", captured under {light}" if light != "D65" else "")
-    )
-    print_statistics(
-        (name, row["unit"], row["p5"], row["median"], row["p95"])
-        for name, row in results["maps"].items()
-    )
-    for key, what in (("below_0", "negative"), ("above_1", "above one")):
-        if results[key]:
-            out.print(f"{results[key]:,} texels have a colour {what}, which is no albedo")
-    colour = results.get("colour")
-    if colour is None:
-        out.print("no texel inside the mask has the colour of skin; check mask and colour space")
-        return
-    share = results["skin_texels"] / results["masked_texels"]
-    out.print(
-        f"model against capture on {results['skin_texels']:,} skin texels (L* > 35, C*ab > 12; "
-        f"{100 * share:.1f} % of the mask): ΔE00 mean "
-        f"{colour['delta_e_mean']:.3f}, 95 % {colour['delta_e_p95']:.3f}, "
-        f"out of gamut {100 * colour['out_of_gamut']:.1f} %, ITA {colour['ita_median']:.0f}°"
-    )
-    told = list(lines(results["maps"], results.get("low_confidence")))
-    for line in told:
+    for line in summary.before(report):
         out.print(line)
-    if not told:
-        out.print(
-            "On skin colours RGB fixes melanin and blood well, thickness less, and says little of "
-            "eumelanin and oxygenation."
-        )
-    if share < 0.2:
-        out.print("That is a small part of the mask: darker texels are not in these numbers.")
-    if colour["out_of_gamut"] > 0.05 and white != "auto":
-        out.print("Many texels are out of gamut: try --white auto, or a tighter --mask.")
+    print_statistics(summary.rows(report))
+    for line in summary.after(report, str(face), f"{stem}.skin.exr"):
+        out.print(line)

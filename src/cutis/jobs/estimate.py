@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from cutis.inverse import Calibration
+    from cutis.report import Report
     from cutis.textures import MaskFile, TextureFile
 
 Progress = Callable[[int, int, str], None]
@@ -112,7 +113,7 @@ def _no_colours() -> "NDArray[np.float32]":
 
 def estimate_file(
     task: Task, calibration: "Calibration", progress: Progress, made_from: str | None = None
-) -> dict[str, Any]:
+) -> "Report":
     """Writes STEM.skin.exr, STEM.model.exr, previews, STEM.report.json; returns the report.
 
     `made_from` goes into the report, which is written last: it says that all the rest is there.
@@ -122,13 +123,13 @@ def estimate_file(
 
 def estimate_and_show(
     task: Task, calibration: "Calibration", progress: Progress, made_from: str | None = None
-) -> "tuple[dict[str, Any], dict[str, NDArray[np.float32]]]":
+) -> "tuple[Report, dict[str, NDArray[np.float32]]]":
     """The same; returns the report and the reduced pictures of the previews."""
     import cutis.maps as maps
     from cutis.colour import LINEAR
     from cutis.inverse import load_model, on_device
     from cutis.optics import NAMES
-    from cutis.report import Regions, Report
+    from cutis.report import Regions, RunningReport
     from cutis.report.previews import Previews
     from cutis.textures import channel_writer, colour_space, replacing, sweep
 
@@ -147,7 +148,7 @@ def estimate_and_show(
         like = maps.blank(
             calibration, how.model, maps.source_note(texture), NAMES if trusted else (), trusted
         )
-        running, previews = Report(like, shape), Previews(calibration, shape)
+        running, previews = RunningReport(like, shape), Previews(calibration, shape)
         regions = None if task.regions is None else Regions(task.regions, shape)
         header: dict[str, Any] = {"colorspace": "lin_rec709" if space == LINEAR else space.name}
         if space.chromaticities is not None and not space.encoded:
@@ -176,19 +177,20 @@ def estimate_and_show(
             progress(min(rows.stop, shape[0]) * shape[1], total, "estimating")
         if not seen:
             raise _empty(task) if mask is None else mask.empty()
-    results = {**running.finish(), "colorspace": f"{texture.space.name} ({texture.origin})"}
-    if regions is not None:
-        results["regions"] = regions.finish()
+    results = replace(
+        running.finish(),
+        colorspace=f"{texture.space.name} ({texture.origin})",
+        regions=() if regions is None else regions.finish(),
+        made_from=made_from,
+    )
     progress(total, total, "drawing previews")
     previews.write(stem)
     if how.page:
         from cutis.report.page import write_report
 
         write_report(Path(f"{stem}.report.html"), results, previews.pictures(), task.face.name)
-    if made_from is not None:
-        results["made_from"] = made_from
     with replacing(Path(f"{stem}.report.json")) as path:
-        path.write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
+        path.write_text(json.dumps(results.as_dict(), indent=2) + "\n", encoding="utf-8")
     return results, previews.pictures()
 
 

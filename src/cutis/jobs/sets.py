@@ -14,6 +14,7 @@ from typing import Any
 from cutis.errors import CutisError
 from cutis.inverse import Calibration
 from cutis.jobs.estimate import Progress, Task, calibrated, estimate_file
+from cutis.report import Report
 
 PIPELINE = 2
 """Rises when results of the same input and settings change, so that they are made again."""
@@ -24,7 +25,7 @@ class Outcome:
     """What came of a capture: its report, or in one line why there is none."""
 
     face: Path
-    report: dict[str, Any] | None = None
+    report: Report | None = None
     failure: str | None = None
     skipped: bool = False
 
@@ -79,7 +80,7 @@ def _calibrate(item: tuple[Sequence[Task], dict[Path, str]], progress: Progress)
     return calibrated(item[0], progress)
 
 
-def _estimate(item: tuple[Task, Calibration, str], progress: Progress) -> dict[str, Any]:
+def _estimate(item: tuple[Task, Calibration, str], progress: Progress) -> Report:
     task, calibration, mark = item
     return estimate_file(task, calibration, progress, mark)
 
