@@ -73,7 +73,9 @@ class MapFigure:
 
 def colour_figures(report: Report, pictures: Pictures) -> list[Photograph | MapFigure]:
     """Capture, reconstruction, difference, ΔE00 and edited picture, as far as they are there."""
-    outside = ~np.isfinite(pictures["error"])[..., None] if "error" in pictures else np.False_
+    outside = np.zeros((1, 1, 1), dtype=bool)
+    if "error" in pictures:
+        outside = ~np.isfinite(pictures["error"])[..., None]
 
     def photo(rgb: NDArray[np.floating], name: str, text: str, side: str = "") -> Photograph:
         return Photograph(Picture.of(photograph(rgb)), name, text, side)
