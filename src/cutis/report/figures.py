@@ -89,7 +89,7 @@ def colour_figures(report: Report, pictures: Pictures) -> list[Photograph | MapF
         found.append(photo(model, "Reconstruction", text, "after"))
     if "capture" in pictures and "model" in pictures:
         apart = difference(pictures["capture"], pictures["model"])
-        black = (apart < BLACK).all(axis=2)[np.broadcast_to(~outside, apart.shape)[..., 0]]
+        black = (apart.max(axis=2) < BLACK)[np.broadcast_to(~outside, apart.shape)[..., 0]]
         share = float(black.mean()) if black.size else 0.0
         text = "absolute, of encoded sRGB; black is none"
         if share > MOSTLY:
