@@ -15,6 +15,7 @@ from fontTools.ttLib import TTFont
 from matplotlib import colormaps, get_data_path
 
 from cutis.textures import replacing
+from studies.generated import record
 
 PAGE = Path(__file__).parents[1] / "src" / "cutis" / "data" / "page"
 NAMES = ("copper_r", "Reds", "viridis", "cividis", "coolwarm", "magma")
@@ -46,6 +47,7 @@ def main() -> None:
     font.save(data)
     with replacing(PAGE / "DejaVuSans-letters.ttf") as partial:
         partial.write_bytes(data.getvalue())
+    record(PAGE / "colour_maps.csv", PAGE / "DejaVuSans-letters.ttf")
 
 
 if __name__ == "__main__":

@@ -24,6 +24,7 @@ from cutis.render.heads import Head, head
 from cutis.render.scene import Scene
 from cutis.textures import read_texture
 from studies.figures.edits import DARK, LABELS, LIGHT
+from studies.generated import record
 from studies.pages import rewrite
 
 ROOT = Path(__file__).parents[1]
@@ -129,6 +130,7 @@ def main() -> None:
                 table.append(f"| {light} | {subject.label} | {cells} |")
                 bar.advance(task)
             sheet(rows, labels).save(PAGE / f"grid-{light}.jpg", quality=88)
+            record(PAGE / f"grid-{light}.jpg")
     rewrite("render.md", grid="\n".join(table))
 
 

@@ -38,7 +38,7 @@ SLOW = {
 }
 """Packages imported only inside functions, and the modules exempt from that."""
 NOT_ROOMS = {"data"}
-TESTS_OF_NO_ROOM = {"studies", "validation"}
+TESTS_OF_NO_ROOM = {"benchmarks", "studies", "validation"}
 
 
 def module_name(path: Path, package: Path) -> str:

@@ -1,12 +1,23 @@
 """Times are taken in turns, memory is what a call adds."""
 
+import io
 import sys
 import time
 
 import numpy as np
 import pytest
+from rich.console import Console
 
-from cutis.apps.timing import Timed, copy_bandwidth, matrix_rate, peak_memory, race
+from cutis.apps.timing import (
+    Timed,
+    announced,
+    copy_bandwidth,
+    fastest,
+    matrix_rate,
+    peak_memory,
+    race,
+    table,
+)
 
 
 def test_entries_take_turns():
@@ -19,6 +30,61 @@ def test_entries_take_turns():
     assert announced == ["a", "b"] * 4
     assert order == ["a", "a", "b", "b", *["a", "b"] * 3]
     assert [len(e.seconds) for e in entries] == [3, 3]
+
+
+def test_a_race_ends_in_time_but_not_before_its_first_round():
+    entries = [Timed(name, "x", lambda: time.sleep(1e-3), 1) for name in "ab"]
+    assert len(list(race(entries, 50, seconds=0))) == 4
+    assert [len(e.seconds) for e in entries] == [1, 1]
+    assert 4 < len(list(race(entries, 10**6, seconds=0.5))) < 10**6
+
+
+def timed(system, step, seconds):
+    return Timed(system, step, lambda: None, 10**9, list(seconds), 5_000_000)
+
+
+def rows(rendered):
+    text = io.StringIO()
+    Console(width=120, file=text).print(rendered)
+    return [" ".join(line.split()) for line in text.getvalue().splitlines()]
+
+
+def test_ratios_are_to_the_faster_form_of_the_rival():
+    entries = [
+        timed("default", "encode", [0.5, 0.4, 0.6]),
+        timed("default", "decode", [0.1]),
+        timed("slow", "encode", [9]),
+        timed("slow", "decode", [9]),
+        timed("tiles", "encode", [8]),
+        timed("tiles", "decode", [2]),
+        timed("exact space", "41 bands", [1]),
+    ]
+    assert fastest(entries, ("slow", "tiles")) == "tiles"
+    assert fastest(entries[:2], ("slow", "tiles")) is None
+    heading, encode, decode, both, *_, spectra = rows(table(entries, 1e10, ("slow", "tiles")))
+    assert heading == "best median ratio copying memory"
+    assert encode == "default encode 0.400 s 0.500 s 20.00 25.0 % 5 MB"
+    assert decode == "decode 0.100 s 0.100 s 20.00 100.0 % 5 MB"
+    assert both == "both 0.500 s 20.00"
+    assert spectra == "exact space 41 bands 1.000 s 1.000 s 10.0 % 5 MB"
+    heading, encode, *_ = rows(table(entries, 1e10))
+    assert heading == "best median copying memory"
+    assert encode == "default encode 0.400 s 0.500 s 25.0 % 5 MB"
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+def test_what_goes_on_is_said_with_and_without_a_terminal(terminal, monkeypatch):
+    text = io.StringIO()
+    monkeypatch.setattr(
+        "cutis.apps.console.err", Console(file=text, force_terminal=terminal, width=80)
+    )
+    with announced(quiet=False) as say:
+        say("making skins")
+        time.sleep(0.3)
+    assert "making skins" in text.getvalue()
+    with announced(quiet=True) as say:
+        say("in silence")
+    assert "silence" not in text.getvalue()
 
 
 def test_seconds_are_those_of_the_run():

@@ -31,7 +31,7 @@ MARGIN, TITLE, TEXT = 10, 15, 13
 HEAD = TITLE + 2 * MARGIN
 BAR, TICK = 22, 5
 """Width of a scale bar, length of its ticks."""
-BESIDE = BAR + 86
+BESIDE = BAR + 64
 """Pixels that a scale bar and its numbers take beside a map."""
 
 
