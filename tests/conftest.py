@@ -120,7 +120,8 @@ def trusting(monkeypatch):
 
     import numpy as np
 
-    from cutis.inverse import models
+    from cutis.inverse import registry
+    from cutis.maps import DEFAULT
     from cutis.optics import PARAMETERS
 
     width = np.array([p.high - p.low for p in PARAMETERS], dtype=np.float32)
@@ -129,10 +130,10 @@ def trusting(monkeypatch):
         sigma = width * np.float32([0.004, 0.005, 0.1, 0.25, 0.3]) * (0.5 + rgb[:, 1:2])
         return np.concatenate([sigma, (rgb[:, :1] > 0.6).astype(np.float32)], axis=1)
 
-    knowing = replace(models.load_model(), to_trust=to_trust, prior_sigma=(0.2,) * 5)
-    real = models._load
+    knowing = replace(registry.load_model(DEFAULT), to_trust=to_trust, prior_sigma=(0.2,) * 5)
+    real = registry._ours
     monkeypatch.setattr(
-        models, "_load", lambda name, how: knowing if name == knowing.name else real(name, how)
+        registry, "_ours", lambda name, how: knowing if name == knowing.name else real(name, how)
     )
     return knowing
 
@@ -251,13 +252,12 @@ def process():
 @pytest.fixture(scope="session")
 def estimated(write_face, face_mask, tmp_path_factory) -> Path:
     """out/ of `cutis estimate face.png`, the capture beside it; not to be written to."""
-    from cutis.jobs.estimate import Settings, Task, calibrated, estimate_file
+    from cutis.jobs.estimate import CaptureFiles, EstimateJob
 
     folder = tmp_path_factory.mktemp("estimated")
     face = write_face(folder)
     out = folder / "out"
-    task = Task(face, None, out, Settings())
-    estimate_file(task, calibrated([task], lambda *_: None), lambda *_: None)
+    EstimateJob((CaptureFiles(face),), out).run()
     assert json.loads((out / "face.report.json").read_text("utf-8"))
     return out
 
