@@ -198,10 +198,10 @@ def _told(error: Exception) -> Exception:
 
 def _share_cores(jobs: int) -> None:
     """Called in a new process before its first task."""
-    import os
-
-    share = max(1, (os.cpu_count() or 1) // jobs)
-    os.environ["NUMBA_NUM_THREADS"] = str(share)
     import OpenImageIO as oiio
 
+    from cutis.kernels import threads, use_threads
+
+    share = max(1, threads() // jobs)
+    use_threads(share)
     oiio.attribute("threads", share)
