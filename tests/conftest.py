@@ -1,7 +1,6 @@
 """Fixtures that every room's tests may use."""
 
 import dataclasses
-import hashlib
 import json
 import os
 import subprocess
@@ -16,15 +15,6 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 ROOT = Path(__file__).parents[1]
 
-# Numba's cache of a kernel notices changes of the kernel's own file, not of the functions that it
-# calls from others. Tests run on code compiled from exactly these sources.
-_SOURCES = hashlib.sha256()
-for _source in sorted((ROOT / "src" / "cutis").rglob("*.py")):
-    if b"compile" in _source.read_bytes().lower():  # says so of itself, in its first lines
-        _SOURCES.update(_source.read_bytes())
-os.environ.setdefault(
-    "NUMBA_CACHE_DIR", str(ROOT / ".pytest_cache" / f"numba-{_SOURCES.hexdigest()[:16]}")
-)
 SHARED_DATA = Path(os.environ.get("CUTIS_SHARED_DATA") or ROOT.parent / "shared" / "data")
 
 
@@ -319,7 +309,7 @@ def worker(scheduler, tmp_path):
             [sys.executable, "-c", code, scheduler, "--no-nanny", "--nthreads", "1",
              "--no-dashboard", "--local-directory", str(tmp_path)],
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=tmp_path,
-            env={**os.environ, "NUMBA_NUM_THREADS": "1"},
+            env={**os.environ, "CUTIS_THREADS": "1"},
         ))  # fmt: skip
         return started[-1]
 

@@ -52,7 +52,6 @@ def bench(
 
 def contestants(count: int, device: str = "cpu") -> tuple[list["Timed"], list[str], int]:
     """What is timed on `count` texels, a line for each that is not installed, the threads."""
-    import numba
     import numpy as np
 
     from cutis.albedo import albedo_space, uniform
@@ -60,10 +59,11 @@ def contestants(count: int, device: str = "cpu") -> tuple[list["Timed"], list[st
     from cutis.apps.rivals import onnx_step, random_networks, tiled, torch_step
     from cutis.apps.timing import Timed
     from cutis.inverse.device import check_device
+    from cutis.kernels import threads as threads_of_kernels
     from cutis.maps import load_model
 
     check_device(device)
-    threads = numba.get_num_threads()
+    threads = threads_of_kernels()
     space, networks = albedo_space(load_model().tissue), random_networks()
     skins = uniform(count, seed=0).astype("float32")
     rgb = space.rgb(skins)

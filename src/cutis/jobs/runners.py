@@ -171,10 +171,12 @@ def in_one_line(error: BaseException) -> CutisError:
 def _begin(count: int) -> None:
     """Called in a new process before its first item."""
     _end_with_parent()
-    share = max(1, (os.cpu_count() or 1) // count)
-    os.environ["NUMBA_NUM_THREADS"] = str(share)
     import OpenImageIO as oiio
 
+    from cutis.kernels import threads, use_threads
+
+    share = max(1, threads() // count)
+    use_threads(share)
     oiio.attribute("threads", share)
 
 

@@ -128,7 +128,8 @@ def judged(
 
     errors, angles = np.zeros(len(truth), np.float32), np.zeros(len(truth), np.float32)
     skin = np.zeros(len(truth), np.bool_)
-    judge(truth, model, to_relative_xyz(), (LIGHTEST_HAIR, PALEST), errors, angles, skin)
+    least = LIGHTEST_HAIR, PALEST
+    judge(len(truth), truth, model, to_relative_xyz(), least, errors, angles, skin)
     return errors, angles, skin
 
 
@@ -148,7 +149,7 @@ class Smoothness:
 
         for values, total in ((u, self._maps), (source, self._colour)):
             sums = np.empty((len(values), values.shape[2]))
-            differences(np.ascontiguousarray(values), where, sums)
+            differences(len(sums), np.ascontiguousarray(values), where, sums)
             total += sums.sum(axis=0)
         if self._last is not None:  # from the last row of what came before to the first of this
             both = self._last[0] & where[0]
