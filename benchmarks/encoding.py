@@ -23,7 +23,7 @@ from cutis.apps.timing import (
     race,
     table,
 )
-from cutis.inverse import load_model
+from cutis.maps import load_model
 
 RIVALS = ("PyTorch, one call", "PyTorch, tiles")
 """BioSkin's network; the faster of the two is what others are compared with."""

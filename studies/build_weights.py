@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from cutis.apps.train import train
-from cutis.inverse.models import EXACT, MEASURED
+from cutis.inverse.shipped import EXACT, MEASURED
 from studies.generated import record
 
 WEIGHTS = Path(__file__).parents[1] / "src" / "cutis" / "data" / "weights"

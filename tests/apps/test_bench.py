@@ -2,7 +2,7 @@
 
 import time
 
-from cutis.inverse.models import DEFAULT
+from cutis.maps import DEFAULT
 
 
 def test_bench_on_a_few_texels(cutis):

@@ -3,6 +3,8 @@
 import io
 import sys
 import time
+from itertools import count
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -32,11 +34,13 @@ def test_entries_take_turns():
     assert [len(e.seconds) for e in entries] == [3, 3]
 
 
-def test_a_race_ends_in_time_but_not_before_its_first_round():
-    entries = [Timed(name, "x", lambda: time.sleep(1e-3), 1) for name in "ab"]
-    assert len(list(race(entries, 50, seconds=0))) == 4
-    assert [len(e.seconds) for e in entries] == [1, 1]
-    assert 4 < len(list(race(entries, 10**6, seconds=0.5))) < 10**6
+@pytest.mark.parametrize(("seconds", "rounds"), [(0, 1), (1, 1), (3, 3), (100, 5)])
+def test_a_race_ends_in_time_but_not_before_its_first_round(seconds, rounds, monkeypatch):
+    clock = SimpleNamespace(monotonic=count().__next__, perf_counter=time.perf_counter)
+    monkeypatch.setattr("cutis.apps.timing.time", clock)  # a second each time it is asked
+    entries = [Timed(name, "x", lambda: None, 1) for name in "ab"]
+    assert len(list(race(entries, 5, seconds))) == 2 + 2 * rounds
+    assert [len(e.seconds) for e in entries] == [rounds] * 2
 
 
 def timed(system, step, seconds):

@@ -3,7 +3,7 @@
 import sys
 
 from benchmarks import encoding
-from cutis.inverse.models import DEFAULT
+from cutis.maps import DEFAULT
 
 
 def run(monkeypatch, capsys, *flags):

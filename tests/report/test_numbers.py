@@ -17,7 +17,7 @@ def found(face_rgb, tmp_path_factory):
     from PIL import Image
 
     skin = estimate(face_rgb)
-    running = RunningReport(skin, skin.shape)
+    running = RunningReport(skin.model, skin.calibration, skin.shape)
     running.add(skin)
     picture = tmp_path_factory.mktemp("regions") / "regions.png"
     Image.fromarray(np.full((*skin.shape, 3), (255, 0, 0), np.uint8)).save(picture)
@@ -25,7 +25,7 @@ def found(face_rgb, tmp_path_factory):
     regions.add(skin, slice(0, skin.shape[0]))
     from dataclasses import replace
 
-    return replace(running.finish(), regions=regions.finish(), colorspace="sRGB", made_from="1f")
+    return replace(running.finish(), regions=regions.finish(), colorspace="sRGB")
 
 
 def test_json_and_back_is_the_same_report(found):
@@ -37,7 +37,7 @@ def test_keys_are_those_of_version_0_1(found):
     data = found.as_dict()
     assert {
         "model", "size", "masked_texels", "skin_texels", "below_0", "above_1", "calibration",
-        "maps", "clamped", "colour", "smoothness", "colorspace", "regions", "made_from",
+        "maps", "clamped", "colour", "smoothness", "colorspace", "regions",
     } <= set(data) <= {*data, "low_confidence"}  # fmt: skip
     assert set(data["calibration"]) == {"gains", "origin", "illuminant"}
     assert set(data["colour"]) == {
@@ -57,7 +57,7 @@ def test_keys_are_those_of_version_0_1(found):
 def test_what_is_not_known_is_left_out():
     data = Report(maps={"blood": MapNumbers("1", 0.0, 0.1, 0.2)}).as_dict()
     assert data["maps"] == {"blood": {"unit": "1", "p5": 0.0, "median": 0.1, "p95": 0.2}}
-    assert not {"colour", "low_confidence", "smoothness", "regions", "made_from"} & set(data)
+    assert not {"colour", "low_confidence", "smoothness", "regions"} & set(data)
     assert data["below_0"] == 0
     assert Report.from_dict(data) == Report.from_dict(Report.from_dict(data).as_dict())
 

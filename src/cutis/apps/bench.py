@@ -40,7 +40,7 @@ def bench(
             say(f"{entry.system}, {entry.step}: run {len(entry.seconds) + 1} of {repeats}")
         say("copying memory, multiplying matrices")
         bandwidth, rate = copy_bandwidth(threads), matrix_rate()
-    out.print(
+    out.say(
         f"{size} × {size} texels, {threads} threads; matrix product {rate / 1e9:.0f} GFLOP/s, "
         f"copy {bandwidth / 1e9:.1f} GB/s read and written"
     )
@@ -51,13 +51,13 @@ def bench(
 
 def contestants(count: int, device: str = "cpu") -> tuple[list["Timed"], int]:
     """What is timed on `count` texels, and the threads that it uses."""
-    import numba
     import numpy as np
 
     from cutis.albedo import albedo_space, uniform
     from cutis.albedo.space import BAND
     from cutis.apps.timing import Timed, pair
-    from cutis.inverse import load_model
+    from cutis.kernels import threads
+    from cutis.maps import load_model
 
     space = albedo_space(load_model().tissue)
     skins = uniform(count, seed=0).astype("float32")
@@ -80,4 +80,4 @@ def contestants(count: int, device: str = "cpu") -> tuple[list["Timed"], int]:
     entries.append(
         Timed("exact space", "decode", lambda: space.rgb(skins), rgb.nbytes + skins.nbytes)
     )
-    return entries, numba.get_num_threads()
+    return entries, threads()

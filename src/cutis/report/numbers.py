@@ -99,8 +99,6 @@ class Report:
     smoothness: Mapping[str, float] = field(default_factory=dict)
     colorspace: str | None = None
     regions: tuple[RegionNumbers, ...] = ()
-    made_from: str | None = None
-    """A digest of all that the results depend on."""
 
     @property
     def skin_share(self) -> float:

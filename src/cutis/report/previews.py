@@ -3,6 +3,7 @@
 Previews are for the eye; the numbers are in the EXR.
 """
 
+import contextlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutis.colour import delta_e
+from cutis.errors import CutisError
 from cutis.inverse import Calibration
-from cutis.maps import SkinMaps
+from cutis.maps import MapsFile, SkinMaps, find_source, open_source
 from cutis.maps.trust import CONFIDENCE, LOW, SIGMA
 from cutis.optics import PARAMETERS, Parameter
 from cutis.report.appearance import COLOUR_MAPS, ERRORS, SURE
@@ -50,7 +52,7 @@ class Previews:
 
     def add(self, skin: SkinMaps) -> None:
         """The next rows."""
-        rows = slice(-skin.first_row % self._step, None, self._step)
+        rows = slice(-skin.maps.whole.first_row % self._step, None, self._step)
         for name, values in self._seen(skin).items():
             self._parts.setdefault(name, []).append(values[rows, :: self._step].copy())
 
@@ -81,13 +83,13 @@ class Previews:
             self._whole = whole
         return self._whole
 
-    def write(self, stem: Path) -> None:
+    def write(self, stem: Path) -> list[Path]:
         """Writes `stem`.<map>.png for the five maps and, with the capture, `stem`.error.png.
 
         Where the model knows them, `stem`.sigma.png shows σ of all maps side by side, and
-        `stem`.confidence.png how likely each colour is one of skin.
+        `stem`.confidence.png how likely each colour is one of skin. Returns what it wrote.
         """
-        pictures = self.pictures()
+        pictures, drawings = self.pictures(), {}
         for known in PARAMETERS:
             values = pictures[known.name]
             low, high = known.low, known.high
@@ -95,18 +97,36 @@ class Previews:
                 low, high = (float(v) for v in np.nanpercentile(values, [1, 99]))
             scale = Scale(low, max(high, low + 1e-9), known.root)
             panel = Panel(values, COLOUR_MAPS[known.name], scale, titled(known.meaning, known))
-            _save(drawn(panel), f"{stem}.{known.name}.png")
+            drawings[known.name] = drawn(panel)
         if "error" in pictures:
             title = "model against capture [ΔE00]"
             panel = Panel(pictures["error"], ERRORS, Scale(0.0, 2.0), title)
-            _save(drawn(panel), f"{stem}.error.png")
+            drawings["error"] = drawn(panel)
         if CONFIDENCE in pictures:
             title = "confidence that the colour is one of skin"
             panel = Panel(pictures[CONFIDENCE], SURE, Scale(0.0, 1.0), title)
-            _save(drawn(panel), f"{stem}.confidence.png")
+            drawings["confidence"] = drawn(panel)
         sigmas = [known for known in PARAMETERS if known.name + SIGMA in pictures]
         if sigmas:
-            _save(in_a_row([_spread(known, pictures) for known in sigmas]), f"{stem}.sigma.png")
+            drawings["sigma"] = in_a_row([_spread(known, pictures) for known in sigmas])
+        return [_saved(one, Path(f"{stem}.{name}.png")) for name, one in drawings.items()]
+
+
+def previews_of(maps: Path) -> dict[str, NDArray[np.float32]]:
+    """Reduced pictures of a file of maps, with its capture where that is at hand."""
+    with contextlib.ExitStack() as stack:
+        file = stack.enter_context(MapsFile(maps))
+        capture = None
+        with contextlib.suppress(CutisError):
+            source = find_source(file.provenance, maps)
+            capture = stack.enter_context(open_source(file.provenance, source))
+        previews = Previews(file.header.calibration, file.shape)
+        for rows in file.bands():
+            skin = file.rows(rows)
+            if capture is not None:
+                skin = skin.with_capture(capture.rows(rows).linear())
+            previews.add(skin)
+    return previews.pictures()
 
 
 def titled(text: str, known: Parameter) -> str:
@@ -132,6 +152,7 @@ def _spread(known: Parameter, pictures: Mapping[str, NDArray[np.float32]]) -> Pa
     )  # fmt: skip
 
 
-def _save(picture: "Image", path: str) -> None:
-    with replacing(Path(path)) as partial:
+def _saved(picture: "Image", path: Path) -> Path:
+    with replacing(path) as partial:
         picture.save(partial, "PNG")
+    return path

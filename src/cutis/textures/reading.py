@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import OpenImageIO as oiio
 
+from cutis.colour.spaces import Space
 from cutis.errors import CutisError
 from cutis.textures.closing import Closing
 from cutis.textures.decoding import Decoder, check_finite, check_memory, is_palette, photometric
@@ -24,7 +25,10 @@ class TextureFile(Closing):
     """
 
     def __init__(
-        self, path: str | os.PathLike[str], colorspace: str = "auto", ocio: str | None = None
+        self,
+        path: str | os.PathLike[str],
+        colorspace: str | Space = "auto",
+        ocio: str | None = None,
     ) -> None:
         self.path = Path(path)
         self._source = Decoder(self.path)
@@ -34,7 +38,7 @@ class TextureFile(Closing):
             self.close()
             raise error if isinstance(error, CutisError) else problem(path, str(error)) from error
 
-    def _describe(self, colorspace: str, ocio: str | None) -> None:
+    def _describe(self, colorspace: str | Space, ocio: str | None) -> None:
         spec, path = self._source.spec, self.path
         self.spec: oiio.ImageSpec = spec
         self.format = self._source.file_format
@@ -56,7 +60,8 @@ class TextureFile(Closing):
                 spec, self.format, self._source.dtype.kind == "f"
             )
         else:
-            self.space, self.origin = colour_space(colorspace, ocio), "given"
+            given = colour_space(colorspace, ocio) if isinstance(colorspace, str) else colorspace
+            self.space, self.origin = given, "given"
 
     def close(self) -> None:
         """Lets go of the file."""
@@ -87,11 +92,11 @@ class TextureFile(Closing):
 
 
 def read_texture(
-    path: str | os.PathLike[str], colorspace: str = "auto", ocio: str | None = None
+    path: str | os.PathLike[str], colorspace: str | Space = "auto", ocio: str | None = None
 ) -> Texture:
     """The texture in a file, in its stored type and with all its channels and metadata.
 
-    `colorspace` names the space of the colours (`textures.colour_space`), in the OpenColorIO
+    `colorspace` is or names the space of the colours (`textures.colour_space`), in the OpenColorIO
     configuration `ocio` if given. With "auto" the file's ICC profile, chromaticities or colour
     tag count; without any, integers are encoded sRGB and floats linear sRGB.
     10 and 12 bit files come as uint16, double as float32. Of an OpenEXR file of several parts the
