@@ -108,24 +108,28 @@ def png_chunks(chunks: dict[bytes, bytes]) -> Iterator[Statement]:
             x = [v / 1e5 for v in struct.unpack(">8I", chunks[b"cHRM"])]
             white, *rest = zip(x[::2], x[1::2], strict=True)
             primaries = tuple(rest)
-        yield Statement(where, _by_gamma(primaries, white, gamma))
+        yield Statement(where, by_gamma(primaries, white, gamma))
     except (ArithmeticError, ValueError, struct.error):
         yield Statement(where, says="cannot be used: its numbers make no sense")
 
 
-def _by_gamma(primaries: Primaries, white: XY, gamma: float | None) -> Space:
+def by_gamma(primaries: Primaries, white: XY, gamma: float | None) -> Space:
     """A space by chromaticities and exponent; sRGB's curve without one."""
     known = nearest(primaries, white)
     if gamma is None or (abs(gamma - 2.2) < 0.01 and known == LINEAR):
         return one_of_ours(known.with_curve(True))
     if abs(gamma - 1) < 1e-3:
         return known
-    name = f"{known.name.replace('linear', 'Rec.709')}, gamma {gamma:.4g}"
-    return curve_space(name, known.primaries, known.white, PowerCurve(gamma))
+    return curve_space(
+        f"{_label(known)}, gamma {gamma:.4g}", known.primaries, known.white, PowerCurve(gamma)
+    )
 
 
-def exif(page: Directory, floating: bool) -> Iterator[Statement]:
-    """Exif: ColorSpace, with the index of the interoperability rules for Adobe RGB [exif] [dcf]."""
+def exif(page: Directory, floating: bool, numbers: bool = True) -> Iterator[Statement]:
+    """Exif: ColorSpace, with the index of the interoperability rules for Adobe RGB [exif] [dcf].
+
+    Without one, and with `numbers`, chromaticities, gamma and transfer function.
+    """
     number = whole(page.exif, ifd.EXIF_COLOUR_SPACE, -1)
     index = page.interop.get(ifd.INTEROP_INDEX, b"")
     adobe = isinstance(index, bytes) and index.startswith(b"R03")
@@ -137,11 +141,11 @@ def exif(page: Directory, floating: bool) -> Iterator[Statement]:
     elif number == 1:
         yield Statement(where, SRGB)
     else:
-        found = list(colorimetry(page, floating))
+        found = list(colorimetry(page, floating)) if numbers else []
         yield from found
-        if number == 0xFFFF and not found:
+        if number == _UNCALIBRATED and not found:
             yield Statement(where, says="says uncalibrated")
-        elif number > 0 and number != 0xFFFF:
+        elif number > 0 and number != _UNCALIBRATED:
             yield Statement(where, says=f"says colour space {number}, which is not known")
 
 
@@ -180,11 +184,11 @@ def colorimetry(page: Directory, floating: bool) -> Iterator[Statement]:
         elif ifd.TRANSFER_FUNCTION in there:
             curves = _transfer(numbers[ifd.TRANSFER_FUNCTION])
             known = nearest(primaries, white)
-            name = f"{known.name.replace('linear', 'Rec.709')} with a curve of its own"
+            name = f"{_label(known)}, with a curve of its own"
             yield Statement(where, curve_space(name, known.primaries, known.white, *curves))
         else:
             gamma = float(numbers[ifd.EXIF_GAMMA][0]) if ifd.EXIF_GAMMA in there else 2.2
-            yield Statement(where, _by_gamma(primaries, white, gamma))
+            yield Statement(where, by_gamma(primaries, white, gamma))
     except (ArithmeticError, TypeError, ValueError):
         yield Statement(where, says="cannot be used: its numbers make no sense")
 
@@ -194,6 +198,12 @@ def _transfer(table: NDArray[np.float64]) -> list[TableCurve]:
     length = len(table)
     parts = [table] if length & (length - 1) == 0 else np.split(table, 3)
     return [TableCurve(part / 65535) for part in parts]
+
+
+def _label(space: RGBSpace) -> str:
+    """What its primaries are called."""
+    labels = {"linear": "Rec.709", "Display P3, no curve": "P3", "Adobe RGB primaries": "Adobe RGB"}
+    return labels.get(space.name, space.name)
 
 
 def nearest(primaries: Primaries, white: XY) -> RGBSpace:

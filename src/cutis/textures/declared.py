@@ -27,6 +27,7 @@ from cutis.textures.colorimetry import (
     ADOBE,
     SLACK,
     Statement,
+    by_gamma,
     cicp,
     colorimetry,
     exif,
@@ -40,7 +41,7 @@ from cutis.textures.ifd import Directory
 from cutis.textures.problem import shorten
 from cutis.textures.spaces import colour_space
 
-LOGARITHMIC = ("printing density", "logarithmic", "kodaklog")
+LOGARITHMIC = ("printing density", "logarithmic", "kodaklog", "adx")
 """Transfer characteristics of DPX files that hold film densities, in lower case."""
 UNTOLD = "assumed, the file says nothing"
 # Names by which the parts of a colorInteropID mean a space [interop].
@@ -73,7 +74,7 @@ def declared_space(
     notes += [f"{one.where} {one.says}: not used" for one in told[:first]]
     for one in told[first + 1 :]:
         if one.space is not None and not alike(one.space, chosen.space):
-            notes.append(f"{one.where} says {one.space.name}, but {chosen.where} comes first")
+            notes.append(f"{one.where} says {one.space.name}: overruled by {chosen.where}")
     return chosen.space, chosen.where, notes
 
 
@@ -89,7 +90,7 @@ def _statements(
         for key in _TEXT_KEYS:
             if key in header.texts:
                 said = shorten(header.texts[key].decode("utf-8", "backslashreplace"))
-                yield Statement(f"its text {key.decode()}", says=f"says {said!r}, which is no word "
+                yield Statement(f"its text {key.decode()}", says=f"says '{said}', which is no word "
                                 "of the format and not believed")  # fmt: skip
     elif header.format == "openexr":
         yield from _openexr(spec)
@@ -99,7 +100,7 @@ def _statements(
         yield from _profile(spec, header.profile or ifd.PROFILE in page.tags)
         if header.format == "tiff":
             yield from colorimetry(page, floating)
-        yield from exif(page, floating)
+        yield from exif(page, floating, numbers=header.format != "tiff")
     yield from _xmp(spec, page, header)
 
 
@@ -136,7 +137,10 @@ def _openexr(spec: oiio.ImageSpec) -> Iterator[Statement]:
     elif numbers is not None:
         yield Statement("its chromaticities", says="are no eight numbers")
     yield from _profile(spec, False)
+    inferred = token or spec.get_int_attribute("acesImageContainerFlag") == 1
     for name in _names(spec):
+        if inferred and name.lower() == "oiio:colorspace":
+            continue  # the reader's own conclusion
         yield _named(f"its {shorten(name)}", _text(spec, name))
 
 
@@ -153,11 +157,11 @@ def _names(spec: oiio.ImageSpec) -> list[str]:
 def _named(where: str, token: str) -> Statement:
     """A space by its name."""
     if token.lower() in ("data", "raw", "non-color", "none"):
-        return Statement(where, says=f"says {shorten(token)!r}, which is no colour")
+        return Statement(where, says=f"says '{shorten(token)}', which is no colour")
     if token.isascii() and token.isprintable() and len(token) <= 100:
         with contextlib.suppress(CutisError, ValueError):
             return Statement(where, _interop(token) or colour_space(token, ""))
-    return Statement(where, says=f"says {shorten(token)!r}, which is not known")
+    return Statement(where, says=f"says '{shorten(token)}', which is not known")
 
 
 def _interop(token: str) -> Space | None:
@@ -196,6 +200,9 @@ def _dpx(spec: oiio.ImageSpec) -> Iterator[Statement]:
         )
     if transfer == "linear":
         yield Statement("its transfer characteristic", LINEAR)
+    gamma = spec.getattribute("oiio:Gamma")  # there where the characteristic is the user's own
+    if isinstance(gamma, int | float) and 0.1 <= gamma <= 10:
+        yield Statement("its gamma", by_gamma(REC709, D65, float(gamma)))
     for where, said in (
         ("its transfer characteristic", transfer),
         ("its colorimetric characteristic", _text(spec, "dpx:Colorimetric").lower()),
@@ -203,14 +210,14 @@ def _dpx(spec: oiio.ImageSpec) -> Iterator[Statement]:
         if said in _VIDEO:
             yield Statement(f"{where} ({said}, taken for sRGB's)", SRGB)
         elif said not in ("", "linear", "user defined", "undefined"):
-            yield Statement(where, says=f"says {shorten(said)!r}, which is not used")
+            yield Statement(where, says=f"says '{shorten(said)}', which is not used")
 
 
 def _xmp(spec: oiio.ImageSpec, page: Directory, header: Header) -> Iterator[Statement]:
     """XMP names the profile that was embedded, which may have been of other colours than these."""
     name = _text(spec, "photoshop:ICCProfile")
     if name:
-        yield Statement("its XMP", says=f"names the profile {shorten(name)!r}, which is not there "
+        yield Statement("its XMP", says=f"names the profile '{shorten(name)}', which is not there "
                         "and not believed")  # fmt: skip
     number = spec.get_int_attribute("Exif:ColorSpace")
     if number and not page.exif.get(ifd.EXIF_COLOUR_SPACE) and header.format != "openexr":

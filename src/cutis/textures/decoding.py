@@ -282,7 +282,7 @@ def _unreadable(path: Path, error: str, header: Header, part: int = 0) -> Except
     first = next((line.strip() for line in error.splitlines() if line.strip()), "")
     if "image size" in first and "exceeds" in first:
         return problem(path, f"is too large ({first}); split it into tiles")
-    if header.kind or _NOT_SUPPORTED.search(first):
+    if _NOT_SUPPORTED.search(first):
         packing = header.kind
         if header.format == "tiff" and part < len(header.pages):
             packing = _UNUSUAL.get(header.pages[part].number(COMPRESSION), "")

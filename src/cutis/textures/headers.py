@@ -7,6 +7,7 @@ state, and its PNG decoder prints damage to the terminal. Looking first avoids a
 did not change since is not looked at again.
 """
 
+import contextlib
 import struct
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -58,6 +59,8 @@ _OTHERS = (
 )
 _PSD_BITS, _PSD_GREY, _PSD_PALETTE, _PSD_RGB, _PSD_CMYK = range(5)
 _PSD_HEADER = 26
+_PSD_PROFILE, _PSD_EXIF, _PSD_XMP = 1039, 1058, 1060
+_LONGEST_RESOURCE = 1 << 20
 
 
 @dataclass(frozen=True)
@@ -107,7 +110,7 @@ def _looked(path: Path, _: tuple[str, int, int, int, int] | None) -> Header:
             if found == "tiff":
                 return _tiff(file)
             if found == "psd":
-                return _psd(path, start[:_PSD_HEADER])
+                return _psd(path, file)
     except OSError as error:
         raise problem(path, f"cannot be read: {error.strerror or error}; copy it again") from error
     if not start:
@@ -152,7 +155,9 @@ def _tiff(file: BinaryIO) -> Header:
     return Header("tiff", pages=tuple(directories(file)))
 
 
-def _psd(path: Path, header: bytes) -> Header:
+def _psd(path: Path, file: BinaryIO) -> Header:
+    file.seek(0)
+    header = file.read(_PSD_HEADER)
     if len(header) < _PSD_HEADER:
         raise problem(path, "is truncated: its header is not whole; copy or export it again")
     (mode,) = struct.unpack(">H", header[24:26])
@@ -160,4 +165,30 @@ def _psd(path: Path, header: bytes) -> Header:
         raise problem(path, "is CMYK, made for print; convert it to RGB")
     if mode not in (_PSD_BITS, _PSD_GREY, _PSD_PALETTE, _PSD_RGB):
         raise problem(path, f"stores another colour model (mode {mode}); convert it to RGB")
-    return Header("psd", {_PSD_BITS: "grey", _PSD_PALETTE: "palette"}.get(mode, ""))
+    found = _psd_resources(file)
+    return Header(
+        "psd",
+        {_PSD_BITS: "grey", _PSD_PALETTE: "palette"}.get(mode, ""),
+        pages=(exif_block(found[_PSD_EXIF]),) if _PSD_EXIF in found else (),
+        xmp=found.get(_PSD_XMP, b""),
+        profile=_PSD_PROFILE in found,
+    )
+
+
+def _psd_resources(file: BinaryIO) -> dict[int, bytes]:
+    """The first image resources of the kinds that matter here, from behind the header on [psd]."""
+    found: dict[int, bytes] = {}
+    with contextlib.suppress(struct.error):
+        (colours,) = struct.unpack(">I", file.read(4))
+        file.seek(colours, 1)
+        (length,) = struct.unpack(">I", file.read(4))
+        end = file.tell() + length
+        while file.tell() < end and file.read(4) == b"8BIM":
+            number, name = struct.unpack(">HB", file.read(3))
+            file.seek(name | 1, 1)  # padded with its length to an even number
+            (size,) = struct.unpack(">I", file.read(4))
+            after = file.tell() + size + size % 2
+            if number in (_PSD_EXIF, _PSD_XMP, _PSD_PROFILE) and number not in found:
+                found[number] = file.read(min(size, _LONGEST_RESOURCE))
+            file.seek(after)
+    return found

@@ -93,8 +93,6 @@ def _kind(marker: int | None, frame: bytes) -> str:
     """What the frame header says of JPEG's rarer kinds."""
     if marker in _LOSSLESS:
         return "lossless JPEG"
-    if marker is not None and marker >= 0xC9:
-        return "JPEG with arithmetic coding"
     return f"JPEG of {frame[0]} bits" if frame and frame[0] != 8 else ""
 
 

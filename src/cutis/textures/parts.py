@@ -90,7 +90,7 @@ def _notes(parts: Sequence[Part], number: int, file_format: str) -> list[str]:
     rest = f" and {len(others) - _NAMED} more" if len(others) > _NAMED else ""
     count = f"{len(parts)}{' or more' if len(parts) == MOST else ''}"
     return [
-        f"{_called(chosen, word)} of {count} is read and edited; {listed}{rest} "
+        f"of {count} pictures {_called(chosen, word)} is read and edited; {listed}{rest} "
         f"{'is' if len(others) == 1 else 'are'} left out"
     ]
 

@@ -62,7 +62,9 @@ def header(source: Texture, fitted: Texture, file_format: str, frame: Frame) -> 
     if fitted.space != source.space:
         _erase(spec, _SPACE)
     other = not same_format or fitted.space != source.space or source.origin == "given"
-    if other or file_format in _PROFILED:  # which the writer has no words for but a profile
+    aces = spec.getattribute("acesImageContainerFlag") is not None
+    _erase(spec, ("acesImageContainerFlag",))  # such a container is not packed with ZIP
+    if other or aces or file_format in _PROFILED:  # where the writer has other words than the file
         _tell_space(spec, fitted, file_format)
     _erase(spec, ("oiio:UnassociatedAlpha", "oiio:subimages"))
     if not same_format or fitted.pixels.dtype != source.pixels.dtype:

@@ -31,7 +31,7 @@ def orientation_of(
     """How a picture is turned to be upright, as Exif numbers it, 1 for not at all; and notes."""
     page = header.pages[part] if part < len(header.pages) else Directory()
     number = page.number(ORIENTATION, 1)
-    if header.format in ("dpx", "openexr", "psd"):
+    if header.format in ("dpx", "openexr"):
         number = int(spec.get_int_attribute("Orientation", 1))
     if number in TURNS:
         if header.format in ("openexr", "psd"):
