@@ -7,8 +7,6 @@ import typer
 
 from cutis.apps import options
 
-TABLES = (".csv", ".tsv", ".txt")
-
 
 def fit(
     spectra: Annotated[
@@ -76,6 +74,7 @@ def fit(
     Example: cutis fit spectra.csv --specular 0.028 --range 400,700 -o skins.csv
     """
     from cutis.jobs.fit import Request, fit_cube, fit_table
+    from cutis.spectra import is_table
 
     flags = {
         "melanin": melanin,
@@ -93,7 +92,7 @@ def fit(
         spectra, output, specular, low, high, scale, noise, held, quiet, tissue, shift,
         tuple(free or ()),
     )  # fmt: skip
-    if spectra.suffix.lower() in TABLES:
+    if is_table(spectra):
         fit_table(request, correlations)
     else:
         fit_cube(request, wavelengths)

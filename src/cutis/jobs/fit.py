@@ -15,9 +15,8 @@ from cutis.errors import CutisError
 from cutis.inverse import SpectralFit, SpectralFitter
 from cutis.inverse.models import EXACT
 from cutis.optics import ALIAGA2022, MEASURED2026, WAVELENGTHS, Parameter, tissue_named
-from cutis.spectra import open_cube
+from cutis.spectra import open_cube, open_table, text_cell
 from cutis.spectra.reflectance import HIGHEST, fraction_scale, without_impossible
-from cutis.spectra.table_files import read_spectra
 from cutis.textures import channel_writer, replacing
 from cutis.textures.problem import problem
 
@@ -88,12 +87,12 @@ def fit_table(request: Request, correlations: bool = False) -> None:
         raise CutisError(f"{output}: skins of a table are a table; end its name in .csv")
     if output is not None and output.resolve() == path.resolve():
         raise CutisError(f"{output.name} is the file of spectra itself; write to another name")
-    table = read_spectra(path)
+    table = open_table(path)
     for note in table.notes:
         request.say(note)
     inside = request.chosen(table.wavelengths)
     stored = table.values[:, inside]
-    fraction, notes = fraction_scale(path, stored, request.scale)
+    fraction, notes = table.scale(inside, request.scale)
     values, low, high = without_impossible(stored * fraction)
     for note in [*notes, *_left_out(low, high)]:
         request.say(note)
@@ -123,14 +122,20 @@ def fit_table(request: Request, correlations: bool = False) -> None:
     names = [p.name for p in found.parameters]
     pairs = list(combinations(range(len(names)), 2)) if correlations else []
     sigma = found.sigma
-    header = [*table.columns, *names, *(f"{name}_sigma" for name in names), "rmse", "wavelengths"]
+    header = [
+        *map(text_cell, table.columns),
+        *names,
+        *(f"{name}_sigma" for name in names),
+        "rmse",
+        "wavelengths",
+    ]
     writer.writerow([*header, *(f"{names[i]}_{names[j]}_correlation" for i, j in pairs)])
-    for row, labels in enumerate(table.labels):
+    for row, label in enumerate(table.labels):
         numbers = [*found.values[row], *sigma[row], found.rmse[row]]
         scaled = np.maximum(sigma[row], 1e-30)
         extra = [found.covariance[row, i, j] / (scaled[i] * scaled[j]) for i, j in pairs]
         cells = [*(f"{v:.6g}" for v in numbers), str(used[row]), *(f"{v:.4f}" for v in extra)]
-        writer.writerow([*labels, *cells])
+        writer.writerow([*map(text_cell, label), *cells])
     if output is None:
         print(text.getvalue(), end="")
     else:
