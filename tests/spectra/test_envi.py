@@ -149,8 +149,8 @@ def test_any_header_is_a_cube_or_one_line(write_envi, tmp_path, fields):
 
 UNITS = {
     "Nanometer": 1, "nanometers": 1, "{Nanometers}": 1, "nm": 1, "Micrometer": 1e-3,
-    "Micrometers": 1e-3, "{ Micrometers }": 1e-3, "microns": 1e-3, "um": 1e-3, "Angstrom": 10, "Angstroms": 10,
-    "Meters": 1e-9, "Unknown": 1, "": 1,
+    "Micrometers": 1e-3, "{ Micrometers }": 1e-3, "microns": 1e-3, "um": 1e-3,
+    "Angstrom": 10, "Angstroms": 10, "Meters": 1e-9, "Unknown": 1, "": 1,
 }  # fmt: skip
 
 

@@ -45,6 +45,8 @@ def nanometres(
     if factor is None:
         what = f"wavelengths in {shorten(unit)} are not known; give a list in nm by --wavelengths"
         raise problem(path, what)
+    if factor == 1 and found.max() < 10:
+        return found * 1e3, ["wavelengths are below 10, not in nm: taken for micrometres"]
     return found * factor, []
 
 
