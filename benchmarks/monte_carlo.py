@@ -18,9 +18,9 @@ import tempfile
 import time
 from pathlib import Path
 
-import numba
 import numpy as np
 
+from cutis.kernels import use_threads
 from cutis.transport import Layer, walk, walk_absorptions
 
 LAYERS = [Layer(1.0, 100.0, 0.9, 0.1), Layer(1.0, 10.0, 0.0, 0.1), Layer(2.0, 10.0, 0.7, 0.2)]
@@ -74,7 +74,7 @@ def time_mcml(program: Path, folder: Path, photons: int, processes: int) -> tupl
 
 def time_walk(photons: int, threads: int, layers=LAYERS, **how) -> tuple[float, object]:
     """The same for the walk of cutis."""
-    numba.set_num_threads(threads)
+    use_threads(threads)
     how = {"dimension": 3, "refractive_index": INDEX, "incidence": 1.0} | how
     walk(layers, photons=10, **how)
     best = np.inf

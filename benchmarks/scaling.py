@@ -33,7 +33,7 @@ def estimated(folder: Path, *flags: str) -> float:
 
 def on_workers(folder: Path, count: int) -> float:
     """The same on a scheduler with `count` workers of one thread."""
-    address, one = "tcp://127.0.0.1:8799", {**os.environ, "NUMBA_NUM_THREADS": "1"}
+    address, one = "tcp://127.0.0.1:8799", {**os.environ, "CUTIS_THREADS": "1"}
     scheduler = subprocess.Popen([BIN / "dask", "scheduler", "--port", "8799", "--no-dashboard"],
                                  stderr=subprocess.DEVNULL)  # fmt: skip
     workers = [

@@ -16,9 +16,9 @@ from rich.progress import Progress
 
 import cutis
 from cutis.colour import lab
-from cutis.jobs.render import Order, render_pictures
+from cutis.jobs.render import RenderJob
+from cutis.jobs.render import Subject as Shown
 from cutis.maps.presets import PRESETS
-from cutis.render.blender import find_blender
 from cutis.render.frames import Frame
 from cutis.render.heads import Head, head
 from cutis.render.scene import Scene
@@ -91,7 +91,7 @@ def main() -> None:
     options = parser.parse_args()
     for folder in (WORK, PAGE):
         folder.mkdir(parents=True, exist_ok=True)
-    blender, cast = find_blender(), subjects()
+    cast = subjects()
     for subject in cast:
         if not subject.maps.is_file():
             subject.estimate()
@@ -114,11 +114,8 @@ def main() -> None:
                     Frame(k, edits=PRESETS[name]) for k, name in enumerate(subject.edits, 2)
                 )]  # fmt: skip
                 stem = WORK / f"{subject.albedo}-{light}"
-                order = Order(
-                    subject.maps, stem.with_suffix(".png"), scene, frames=tuple(frames),
-                    credits=(subject.head.credit,),
-                )  # fmt: skip
-                render_pictures(order, blender, lambda *_: None)
+                shown = Shown(subject.maps, scene)
+                RenderJob(shown, stem.with_suffix(".png"), tuple(frames)).run()
                 files = [Path(f"{stem}.{frame.number:04d}.png") for frame in frames]
                 names = [LABELS[name] for name in subject.edits]
                 rows.append(files)

@@ -1,7 +1,6 @@
 """Fixtures that every room's tests may use."""
 
 import dataclasses
-import hashlib
 import json
 import os
 import subprocess
@@ -16,15 +15,6 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 ROOT = Path(__file__).parents[1]
 
-# Numba's cache of a kernel notices changes of the kernel's own file, not of the functions that it
-# calls from others. Tests run on code compiled from exactly these sources.
-_SOURCES = hashlib.sha256()
-for _source in sorted((ROOT / "src" / "cutis").rglob("*.py")):
-    if b"compile" in _source.read_bytes().lower():  # says so of itself, in its first lines
-        _SOURCES.update(_source.read_bytes())
-os.environ.setdefault(
-    "NUMBA_CACHE_DIR", str(ROOT / ".pytest_cache" / f"numba-{_SOURCES.hexdigest()[:16]}")
-)
 SHARED_DATA = Path(os.environ.get("CUTIS_SHARED_DATA") or ROOT.parent / "shared" / "data")
 
 
@@ -120,7 +110,8 @@ def trusting(monkeypatch):
 
     import numpy as np
 
-    from cutis.inverse import models
+    from cutis.inverse import registry
+    from cutis.maps import DEFAULT
     from cutis.optics import PARAMETERS
 
     width = np.array([p.high - p.low for p in PARAMETERS], dtype=np.float32)
@@ -129,10 +120,10 @@ def trusting(monkeypatch):
         sigma = width * np.float32([0.004, 0.005, 0.1, 0.25, 0.3]) * (0.5 + rgb[:, 1:2])
         return np.concatenate([sigma, (rgb[:, :1] > 0.6).astype(np.float32)], axis=1)
 
-    knowing = replace(models.load_model(), to_trust=to_trust, prior_sigma=(0.2,) * 5)
-    real = models._load
+    knowing = replace(registry.load_model(DEFAULT), to_trust=to_trust, prior_sigma=(0.2,) * 5)
+    real = registry._ours
     monkeypatch.setattr(
-        models, "_load", lambda name, how: knowing if name == knowing.name else real(name, how)
+        registry, "_ours", lambda name, how: knowing if name == knowing.name else real(name, how)
     )
     return knowing
 
@@ -251,13 +242,12 @@ def process():
 @pytest.fixture(scope="session")
 def estimated(write_face, face_mask, tmp_path_factory) -> Path:
     """out/ of `cutis estimate face.png`, the capture beside it; not to be written to."""
-    from cutis.jobs.estimate import Settings, Task, calibrated, estimate_file
+    from cutis.jobs.estimate import CaptureFiles, EstimateJob
 
     folder = tmp_path_factory.mktemp("estimated")
     face = write_face(folder)
     out = folder / "out"
-    task = Task(face, None, out, Settings())
-    estimate_file(task, calibrated([task], lambda *_: None), lambda *_: None)
+    EstimateJob((CaptureFiles(face),), out).run()
     assert json.loads((out / "face.report.json").read_text("utf-8"))
     return out
 
@@ -319,7 +309,7 @@ def worker(scheduler, tmp_path):
             [sys.executable, "-c", code, scheduler, "--no-nanny", "--nthreads", "1",
              "--no-dashboard", "--local-directory", str(tmp_path)],
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=tmp_path,
-            env={**os.environ, "NUMBA_NUM_THREADS": "1"},
+            env={**os.environ, "CUTIS_THREADS": "1"},
         ))  # fmt: skip
         return started[-1]
 

@@ -11,6 +11,7 @@ PACKAGE = ROOT / "src" / "cutis"
 TESTS = ROOT / "tests"
 
 ROOMS = (
+    "kernels",
     "optics",
     "transport",
     "colour",

@@ -5,7 +5,7 @@ import sys
 
 from cutis.apps.bench import fastest_rival, table
 from cutis.apps.timing import Timed
-from cutis.inverse.models import DEFAULT
+from cutis.maps import DEFAULT
 
 
 def timed(system, step, seconds):

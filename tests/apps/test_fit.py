@@ -8,7 +8,7 @@ import pytest
 
 from cutis.albedo import albedo_space
 from cutis.albedo.sampled import SampledSpace
-from cutis.maps.files import MapsFile
+from cutis.maps.reading import MapsFile
 from cutis.optics import (
     ALIAGA2022,
     MEASURED2026,

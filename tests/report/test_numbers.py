@@ -109,4 +109,4 @@ def test_a_flat_capture_is_smooth():
 
 def test_a_report_needs_the_capture(skin):
     with pytest.raises(CutisError, match="needs the capture"):
-        report(dataclasses.replace(skin, source=None))
+        report(skin.with_capture(None))

@@ -45,7 +45,8 @@ def test_off_the_mask_is_in_no_region(skin, picture):
     mask = np.zeros(skin.shape, np.float32)
     mask[:2] = 1
     regions = Regions(picture, skin.shape)
-    regions.add(dataclasses.replace(skin, mask=mask), slice(0, skin.shape[0]))
+    narrow = dataclasses.replace(skin, found=dataclasses.replace(skin.found, mask=mask))
+    regions.add(narrow, slice(0, skin.shape[0]))
     assert [one["texels"] for one in regions.finish()] == [24]
 
 

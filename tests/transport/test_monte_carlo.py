@@ -4,13 +4,13 @@ import os
 import subprocess
 import sys
 
-import numba
 import numpy as np
 import pytest
-from numba import njit
 from scipy.stats import norm
 
 from cutis.errors import CutisError
+from cutis.kernels import use_threads
+from cutis.kernels.compiling import compiled
 from cutis.transport import Layer, stack_balance, two_layer_albedo, walk, walk_absorptions
 from cutis.transport.history import make_history
 from cutis.transport.monte_carlo import BLOCK, walk_stacks
@@ -19,10 +19,10 @@ LEVEL = 1e-3
 """Chance that a right walk fails a test, were its seed not fixed."""
 SKIN = [Layer(20.0, 160.0, 0.77, 0.008), Layer(1.0, 160.0, 0.77)]
 
-_history = make_history(njit)
+_history = make_history(compiled())
 
 
-@njit
+@compiled()
 def _orders(photons, stack, dimension, incidence, counts):
     """How many photons leave a half space after 1, 2, … collisions; each costs a thousandth."""
     score = np.zeros(4)
@@ -105,14 +105,13 @@ def test_error_is_that_of_repeated_walks():
 
 
 def test_threads_do_not_change_the_answer():
-    most = numba.get_num_threads()
     answers = []
     try:
-        for threads in {1, most}:
-            numba.set_num_threads(threads)
+        for threads in (1, 2, 3):
+            use_threads(threads)
             answers.append(walk(SKIN, photons=3 * BLOCK + 17, seed=2))
     finally:
-        numba.set_num_threads(most)
+        use_threads(None)
     for one in answers:
         assert one.reflected == answers[0].reflected
         assert one.reflected_error == answers[0].reflected_error

@@ -7,16 +7,18 @@ Per texel 3 · 3 · 3 nodes of sixteen terms over melanin, eumelanin and thickne
 from typing import Any
 
 import numpy as np
-from numba import njit, prange
 
 from cutis.albedo.lanes import spline_product_16
 from cutis.albedo.spline import first_node, place_in_cells, quadratic_weights
+from cutis.kernels.compiling import compiled, on_all_cores
 
 BLOCK = 128
-"""Texels that one task works on."""
+"""Texels whose cells and weights are found together."""
+PIECE = 128 * BLOCK
+"""Texels that a thread works on at a time."""
 
 
-@njit(fastmath=True, cache=True)
+@compiled(fast=True)
 def _place(x: Any, low: Any, scale: Any, count: Any, at: Any) -> None:
     """Fills at (4, BLOCK) with cell and three weights of coordinates x (BLOCK,) on one axis."""
     cells = np.float32(count)
@@ -25,7 +27,7 @@ def _place(x: Any, low: Any, scale: Any, count: Any, at: Any) -> None:
         at[1, i], at[2, i], at[3, i] = quadratic_weights(f)
 
 
-@njit(fastmath=True, error_model="numpy", cache=True)
+@compiled(fast=True)
 def _load(skins: Any, half: Any, x: Any) -> None:
     """Coordinates of skins (n, 5) into the rows of x (5, BLOCK), in the order of the axes."""
     for i in range(len(skins)):
@@ -37,23 +39,22 @@ def _load(skins: Any, half: Any, x: Any) -> None:
         x[2, i] = x[2, i] / (x[2, i] + half)
 
 
-@njit(parallel=True, fastmath=True, cache=True)
+@on_all_cores(PIECE, fast=True)
 def decode_kernel(
-    skins: Any, upper: Any, lower: Any, low: Any, scale: Any, half: Any, out: Any
-) -> None:
+    start: Any, stop: Any, skins: Any, upper: Any, lower: Any, low: Any, scale: Any, half: Any,
+    out: Any
+) -> None:  # fmt: skip
     """Fills out (n, 3) with the RGB of skins (n, 5).
 
     `upper` (M+2, E+2, T+2, 16), `lower` (3, B+2, O+2, 16); `low`, `scale` tuples of five turn the
     coordinates of the axes into cells, `half` is the thickness halfway along its axis.
     """
-    n = skins.shape[0]
     counts = (*upper.shape[:3], lower.shape[1], lower.shape[2])
-    for block in prange((n + BLOCK - 1) // BLOCK):
-        x = np.ones((5, BLOCK), dtype=np.float32)
-        at = np.empty((20, BLOCK), dtype=np.float32)
-        start = block * BLOCK
-        count = min(n - start, BLOCK)
-        _load(skins[start : start + count], half, x)
+    x = np.ones((5, BLOCK), dtype=np.float32)
+    at = np.empty((20, BLOCK), dtype=np.float32)
+    for first in range(start, stop, BLOCK):
+        count = min(stop - first, BLOCK)
+        _load(skins[first : first + count], half, x)
         for axis in range(5):
             place = at[4 * axis : 4 * axis + 4]
             _place(x[axis], low[axis], scale[axis], counts[axis] - 2, place)
@@ -74,4 +75,4 @@ def decode_kernel(
             red = spline_product_16(upper, above, by_above, lower, (0, b, o), by_below)
             green = spline_product_16(upper, above, by_above, lower, (1, b, o), by_below)
             blue = spline_product_16(upper, above, by_above, lower, (2, b, o), by_below)
-            out[start + i, 0], out[start + i, 1], out[start + i, 2] = red, green, blue
+            out[first + i, 0], out[first + i, 1], out[first + i, 2] = red, green, blue

@@ -71,7 +71,8 @@ class ColourTable:
         skins = np.ascontiguousarray(parameters, dtype=np.float32)
         flat = skins.reshape(-1, len(PARAMETERS))
         out = np.empty((len(flat), 3), dtype=np.float32)
-        decode_kernel(flat, self.upper, self.lower, *self._scaling, np.float32(HALF), out)
+        half = np.float32(HALF)
+        decode_kernel(len(flat), flat, self.upper, self.lower, *self._scaling, half, out)
         return out.reshape(*skins.shape[:-1], 3)
 
     @cached_property

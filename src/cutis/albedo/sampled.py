@@ -60,7 +60,8 @@ class SampledSpace:
         slopes = np.empty((*spectra.shape, len(self.space.slots)), dtype=np.float32)
         for start in range(0, len(skins), BAND):
             part = slice(start, start + BAND)
+            some = skins[part]
             spectra_and_slopes(
-                skins[part], self.space.slots, *self.model, spectra[part], slopes[part]
+                len(some), some, self.space.slots, *self.model, spectra[part], slopes[part]
             )
         return spectra, slopes[..., list(self.space.places)]

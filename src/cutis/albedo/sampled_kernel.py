@@ -8,7 +8,6 @@ the table to the next; what is blended is transport, which is smooth, not absorp
 from typing import Any
 
 import numpy as np
-from numba import njit, prange
 
 from cutis.albedo.spline import (
     cubic_weights,
@@ -17,13 +16,14 @@ from cutis.albedo.spline import (
     parameter_slopes,
     weight_slopes,
 )
+from cutis.kernels.compiling import compiled, on_all_cores
 
-BLOCK = 64
-"""Skins that one task works on."""
+PIECE = 64
+"""Skins that a thread works on at a time."""
 ONE, QUARTER = np.float32(1), np.float32(0.25)
 
 
-@njit(inline="always", fastmath=True)
+@compiled(fast=True, inline=True)
 def _sums(c: Any, i: Any, j: Any, k: Any, we: Any, wd: Any, wt: Any, se: Any, sd: Any, st: Any
 ) -> Any:  # fmt: skip
     """Sum of the 4 × 4 × 4 coefficients at cell (i, j, k), and its slopes by e, d and t."""
@@ -44,7 +44,7 @@ def _sums(c: Any, i: Any, j: Any, k: Any, we: Any, wd: Any, wt: Any, se: Any, sd
     return value, by_e, by_d, by_t
 
 
-@njit(inline="always", fastmath=True)
+@compiled(fast=True, inline=True)
 def _band(
     b: Any, re: Any, rd: Any, k: Any, wt: Any, st: Any, table: Any, low: Any, scale: Any
 ) -> Any:
@@ -74,7 +74,7 @@ def _band(
     return value, by_e, by_d, by_t * scale[b, 2]
 
 
-@njit(fastmath=True, cache=True)
+@compiled(fast=True)
 def spectrum_and_slope(
     x: Any, slots: Any, spectra: Any, bands: Any, blends: Any, table: Any, low: Any, scale: Any,
     spectrum: Any, slope: Any
@@ -101,15 +101,13 @@ def spectrum_and_slope(
             slope[n, p] = slopes[p]
 
 
-@njit(parallel=True, fastmath=True, cache=True)
+@on_all_cores(PIECE, fast=True)
 def spectra_and_slopes(
-    skins: Any, slots: Any, spectra: Any, bands: Any, blends: Any, table: Any, low: Any, scale: Any,
-    out: Any, slope: Any
+    start: Any, stop: Any, skins: Any, slots: Any, spectra: Any, bands: Any, blends: Any,
+    table: Any, low: Any, scale: Any, out: Any, slope: Any
 ) -> None:  # fmt: skip
     """`spectrum_and_slope` of every skin: fills out (m, n) and slope (m, n, p)."""
-    m = skins.shape[0]
-    for block in prange((m + BLOCK - 1) // BLOCK):
-        for row in range(block * BLOCK, min(m, (block + 1) * BLOCK)):
-            spectrum_and_slope(
-                skins[row], slots, spectra, bands, blends, table, low, scale, out[row], slope[row]
-            )
+    for row in range(start, stop):
+        spectrum_and_slope(
+            skins[row], slots, spectra, bands, blends, table, low, scale, out[row], slope[row]
+        )

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from cutis.albedo.separated import separate
 from cutis.albedo.spectral_table import CELLS, SpectralTable, spectral_table
-from cutis.colour import spectrum_to_rgb
+from cutis.colour import LightLike, spectrum_to_rgb
 from cutis.errors import CutisError
 from cutis.optics import (
     ALIAGA2022,
@@ -75,10 +75,11 @@ class AlbedoSpace:
             raise CutisError(f"out must be a C-contiguous float32 array of shape {whole}")
         spectra = out.reshape(-1, len(WAVELENGTHS))
         for band in _bands(len(flat)):
-            reflectance_kernel(_float32(flat[band]), self.slots, *self._separated, spectra[band])
+            some = _float32(flat[band])
+            reflectance_kernel(len(some), some, self.slots, *self._separated, spectra[band])
         return out
 
-    def rgb(self, parameters: ArrayLike, light: str = "D65") -> NDArray[np.float32]:
+    def rgb(self, parameters: ArrayLike, light: LightLike = "D65") -> NDArray[np.float32]:
         """(..., 5) parameters → (..., 3) linear sRGB, white-balanced under `light`.
 
         Lights are those of `colour.illuminant`; CutisError for others.
@@ -91,7 +92,8 @@ class AlbedoSpace:
         if light != "D65":
             weights = spectrum_to_rgb(WAVELENGTHS, light).astype(np.float32)
         for band in _bands(len(flat)):
-            rgb_kernel(_float32(flat[band]), self.slots, *self._separated, weights, out[band])
+            some = _float32(flat[band])
+            rgb_kernel(len(some), some, self.slots, *self._separated, weights, out[band])
         return out.reshape(*shape, 3)
 
     def rgb_gradient(
@@ -104,9 +106,8 @@ class AlbedoSpace:
         out = np.empty((len(flat), 3), dtype=np.float32)
         slope = np.empty((len(flat), 3, flat.shape[1]), dtype=np.float32)
         for band in _bands(len(flat)):
-            rgb_gradient_kernel(
-                _float32(flat[band]), self.slots, *self.model, out[band], slope[band]
-            )
+            some = _float32(flat[band])
+            rgb_gradient_kernel(len(some), some, self.slots, *self.model, out[band], slope[band])
         slope = slope[..., list(self.places)]
         return out.reshape(*shape, 3), slope.reshape(*shape, 3, len(self.places))
 

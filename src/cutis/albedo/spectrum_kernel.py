@@ -9,17 +9,19 @@ nearest cache.
 from typing import Any
 
 import numpy as np
-from numba import njit, prange
 
 from cutis.albedo.lanes import spline_product_8
 from cutis.albedo.spline import cubic_weights, first_node, locate_cell, place_in_cells
+from cutis.kernels.compiling import compiled, on_all_cores
 
 BLOCK = 128
-"""Texels that one task works on."""
+"""Texels that go through the bands together."""
+PIECE = 32 * BLOCK
+"""Texels that a thread works on at a time."""
 ONE = np.float32(1)
 
 
-@njit(fastmath=True, cache=True)
+@compiled(fast=True)
 def _locate(
     x: Any, slots: Any, spectra: Any, b: Any, cells: Any, low: Any, scale: Any, at: Any
 ) -> None:
@@ -46,7 +48,7 @@ def _locate(
         at[6, i], at[7, i], at[8, i], at[9, i] = cubic_weights(f)
 
 
-@njit(fastmath=True, cache=True)
+@compiled(fast=True)
 def _load(skins: Any, slots: Any, thickness: Any, x: Any, at: Any) -> None:
     """Parameters (n, p) into the rows of x (8, BLOCK); thickness cell and weights into at."""
     low, scale, count = thickness
@@ -58,7 +60,7 @@ def _load(skins: Any, slots: Any, thickness: Any, x: Any, at: Any) -> None:
         at[1, i], at[2, i], at[3, i], at[4, i] = cubic_weights(f)
 
 
-@njit(inline="always", fastmath=True)
+@compiled(fast=True, inline=True)
 def _albedo(b: Any, i: Any, at: Any, at_t: Any, upper: Any, lower: Any) -> Any:
     e = first_node(at[0, i], upper.shape[1] - 3)
     d = first_node(at[5, i], lower.shape[1] - 3)
@@ -69,43 +71,43 @@ def _albedo(b: Any, i: Any, at: Any, at_t: Any, upper: Any, lower: Any) -> Any:
     return spline_product_8(upper, (b, e, k), (by_e, by_t), lower, (b, d), (by_d,))
 
 
-@njit(parallel=True, fastmath=True, cache=True)
+@on_all_cores(PIECE, fast=True)
 def reflectance_kernel(
-    skins: Any, slots: Any, spectra: Any, upper: Any, lower: Any, low: Any, scale: Any, out: Any
-) -> None:
+    start: Any, stop: Any, skins: Any, slots: Any, spectra: Any, upper: Any, lower: Any, low: Any,
+    scale: Any, out: Any
+) -> None:  # fmt: skip
     """Fills out (n, bands) with reflectance in [0, 1]."""
-    n = skins.shape[0]
     cells = upper.shape[1] - 3, lower.shape[1] - 3
     thickness = low[0, 2], scale[0, 2], upper.shape[2]
-    for block in prange((n + BLOCK - 1) // BLOCK):
-        x = np.ones((8, BLOCK), dtype=np.float32)
-        at = np.empty((10, BLOCK), dtype=np.float32)
-        at_t = np.empty((5, BLOCK), dtype=np.float32)
-        part = skins[block * BLOCK : min(n, (block + 1) * BLOCK)]
+    x = np.ones((8, BLOCK), dtype=np.float32)
+    at = np.empty((10, BLOCK), dtype=np.float32)
+    at_t = np.empty((5, BLOCK), dtype=np.float32)
+    for first in range(start, stop, BLOCK):
+        part = skins[first : min(stop, first + BLOCK)]
         _load(part, slots, thickness, x, at_t)
         for b in range(spectra.shape[1]):
             _locate(x, slots, spectra, b, cells, low, scale, at)
             for i in range(len(part)):
-                out[block * BLOCK + i, b] = _albedo(b, i, at, at_t, upper, lower)
+                out[first + i, b] = _albedo(b, i, at, at_t, upper, lower)
 
 
-@njit(parallel=True, fastmath=True, cache=True)
+@on_all_cores(PIECE, fast=True)
 def rgb_kernel(
-    skins: Any, slots: Any, spectra: Any, upper: Any, lower: Any, low: Any, scale: Any, to_rgb: Any,
-    out: Any
+    start: Any, stop: Any, skins: Any, slots: Any, spectra: Any, upper: Any, lower: Any, low: Any,
+    scale: Any, to_rgb: Any, out: Any
 ) -> None:  # fmt: skip
     """Fills out (n, 3) with Σ_band albedo · to_rgb (bands, 3)."""
-    n = skins.shape[0]
     cells = upper.shape[1] - 3, lower.shape[1] - 3
     thickness = low[0, 2], scale[0, 2], upper.shape[2]
-    for block in prange((n + BLOCK - 1) // BLOCK):
-        x = np.ones((8, BLOCK), dtype=np.float32)
-        at = np.empty((10, BLOCK), dtype=np.float32)
-        at_t = np.empty((5, BLOCK), dtype=np.float32)
-        part = skins[block * BLOCK : min(n, (block + 1) * BLOCK)]
+    x = np.ones((8, BLOCK), dtype=np.float32)
+    at = np.empty((10, BLOCK), dtype=np.float32)
+    at_t = np.empty((5, BLOCK), dtype=np.float32)
+    for first in range(start, stop, BLOCK):
+        part = skins[first : min(stop, first + BLOCK)]
         _load(part, slots, thickness, x, at_t)
-        rgb = out[block * BLOCK : block * BLOCK + len(part)]
-        rgb[:] = 0
+        rgb = out[first : first + len(part)]
+        for i in range(len(part)):
+            rgb[i, 0] = rgb[i, 1] = rgb[i, 2] = 0
         for b in range(spectra.shape[1]):
             _locate(x, slots, spectra, b, cells, low, scale, at)
             red, green, blue = to_rgb[b, 0], to_rgb[b, 1], to_rgb[b, 2]

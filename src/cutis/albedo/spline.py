@@ -13,15 +13,16 @@ cells. Tests hold the result against the exact solver.
 from typing import Any
 
 import numpy as np
-from numba import njit, prange
 
-BLOCK = 256
-"""Texels that one task works on."""
+from cutis.kernels.compiling import compiled, on_all_cores
+
+PIECE = 256
+"""Texels that a thread works on at a time."""
 ONE, HALF = np.float32(1), np.float32(0.5)
 SIXTH, TWO_THIRDS = np.float32(1 / 6), np.float32(2 / 3)
 
 
-@njit(inline="always", fastmath=True)
+@compiled(fast=True, inline=True)
 def cubic_weights(f: Any) -> Any:
     """The four cubic B-spline weights at fraction f of a cell."""
     g = ONE - f
@@ -33,7 +34,7 @@ def cubic_weights(f: Any) -> Any:
     )
 
 
-@njit(inline="always", fastmath=True)
+@compiled(fast=True, inline=True)
 def weight_slopes(f: Any) -> Any:
     """Derivatives of `cubic_weights` by f."""
     g, three_halves, two = ONE - f, np.float32(1.5), np.float32(2)
@@ -45,7 +46,7 @@ def weight_slopes(f: Any) -> Any:
     )
 
 
-@njit(inline="always", fastmath=True)
+@compiled(fast=True, inline=True)
 def locate_cell(x: Any, low: Any, scale: Any, count: Any) -> Any:
     """Index of the cell that x falls in and the fraction of the way through it."""
     cells = count - 3
@@ -54,7 +55,7 @@ def locate_cell(x: Any, low: Any, scale: Any, count: Any) -> Any:
     return i, p - np.float32(i)
 
 
-@njit(inline="always", fastmath=True)
+@compiled(fast=True, inline=True)
 def _sum(c: Any, i: Any, j: Any, k: Any, we: Any, wd: Any, wt: Any) -> Any:
     """Tensor-product sum of the 4 × 4 × 4 coefficients at cell (i, j, k)."""
     total = np.float32(0)
@@ -67,14 +68,14 @@ def _sum(c: Any, i: Any, j: Any, k: Any, we: Any, wd: Any, wt: Any) -> Any:
     return total
 
 
-@njit(inline="always", fastmath=True)
+@compiled(fast=True, inline=True)
 def quadratic_weights(f: Any) -> Any:
     """The three quadratic B-spline weights at fraction f of a cell."""
     g = ONE - f
     return HALF * g * g, HALF + f * g, HALF * f * f
 
 
-@njit(inline="always", fastmath=True)
+@compiled(fast=True, inline=True)
 def place_in_cells(x: Any, low: Any, scale: Any, cells: Any) -> Any:
     """`locate_cell` in a form that compilers run on many x at once.
 
@@ -85,13 +86,13 @@ def place_in_cells(x: Any, low: Any, scale: Any, cells: Any) -> Any:
     return cell, p - cell
 
 
-@njit(inline="always", fastmath=True)
+@compiled(fast=True, inline=True)
 def first_node(cell: Any, cells: Any) -> Any:
     """A cell of `place_in_cells` as an index, inside the table even when x was NaN."""
     return min(max(int(cell), 0), cells - 1)
 
 
-@njit(inline="always", fastmath=True)
+@compiled(fast=True, inline=True)
 def mixtures(x: Any, slots: Any, spectra: Any, b: Any) -> Any:
     """μa of melanin, of blood, of epidermis and of dermis at band b, cm⁻¹."""
     pigment = x[3] * spectra[0, b] + (ONE - x[3]) * spectra[1, b]
@@ -108,7 +109,7 @@ def mixtures(x: Any, slots: Any, spectra: Any, b: Any) -> Any:
     return pigment, blood, epidermis, dermis
 
 
-@njit(fastmath=True)  # not inlined: tuples of three lengths, of which types allow but one
+@compiled(fast=True)  # not inlined: tuples of three lengths, of which types allow but one
 def parameter_slopes(
     x: Any, slots: Any, spectra: Any, b: Any, pigment: Any, blood: Any, by_e: Any, by_d: Any,
     by_t: Any
@@ -138,7 +139,7 @@ def parameter_slopes(
     return by_melanin, by_blood, by_t, by_eumelanin, by_oxygen
 
 
-@njit(fastmath=True, cache=True)
+@compiled(fast=True)
 def rgb_and_slope(
     x: Any, slots: Any, spectra: Any, table: Any, low: Any, scale: Any, to_rgb: Any, rgb: Any,
     slope: Any
@@ -168,8 +169,10 @@ def rgb_and_slope(
                 slope[channel, p] += partials[p] * weight
 
 
-@njit(parallel=True, fastmath=True, cache=True)
+@on_all_cores(PIECE, fast=True)
 def rgb_gradient_kernel(
+    start: Any,
+    stop: Any,
     skins: Any,
     slots: Any,
     spectra: Any,
@@ -181,9 +184,5 @@ def rgb_gradient_kernel(
     slope: Any,
 ) -> None:
     """`rgb_and_slope` of every skin: fills out (n, 3) and slope (n, 3, p)."""
-    n = skins.shape[0]
-    for block in prange((n + BLOCK - 1) // BLOCK):
-        for row in range(block * BLOCK, min(n, (block + 1) * BLOCK)):
-            rgb_and_slope(
-                skins[row], slots, spectra, table, low, scale, to_rgb, out[row], slope[row]
-            )
+    for row in range(start, stop):
+        rgb_and_slope(skins[row], slots, spectra, table, low, scale, to_rgb, out[row], slope[row])

@@ -31,13 +31,13 @@ def bench(
 
     Example: cutis bench --size 1024
     """
-    from cutis.apps.console import out, steps
+    from cutis.apps.console import bar, out
     from cutis.apps.timing import copy_bandwidth, matrix_rate, race
 
     entries, missing, threads = contestants(size * size, device)
-    with steps(len(entries) * (repeats + 1), quiet) as progress:
-        for entry in race(entries, repeats):
-            progress.step(f"{entry.system}: {entry.step}")
+    with bar(quiet) as progress:
+        for number, entry in enumerate(race(entries, repeats)):
+            progress(number, len(entries) * (repeats + 1), f"{entry.system}: {entry.step}")
     bandwidth, rate = copy_bandwidth(threads), matrix_rate()
     out.print(
         f"{size} × {size} texels, {threads} threads; matrix product {rate / 1e9:.0f} GFLOP/s, "
@@ -52,18 +52,18 @@ def bench(
 
 def contestants(count: int, device: str = "cpu") -> tuple[list["Timed"], list[str], int]:
     """What is timed on `count` texels, a line for each that is not installed, the threads."""
-    import numba
     import numpy as np
 
     from cutis.albedo import albedo_space, uniform
     from cutis.albedo.space import BAND
     from cutis.apps.rivals import onnx_step, random_networks, tiled, torch_step
     from cutis.apps.timing import Timed
-    from cutis.inverse import load_model
     from cutis.inverse.device import check_device
+    from cutis.kernels import threads as threads_of_kernels
+    from cutis.maps import load_model
 
     check_device(device)
-    threads = numba.get_num_threads()
+    threads = threads_of_kernels()
     space, networks = albedo_space(load_model().tissue), random_networks()
     skins = uniform(count, seed=0).astype("float32")
     rgb = space.rgb(skins)

@@ -34,7 +34,7 @@ def lab(rgb: ArrayLike) -> NDArray[np.float32]:
 
     flat = _flat(rgb)
     result = np.empty(flat.shape, dtype=np.float32)
-    lab_kernel(flat, to_relative_xyz(), result)
+    lab_kernel(len(flat), flat, to_relative_xyz(), result)
     return result.reshape(np.shape(rgb))
 
 
@@ -44,7 +44,7 @@ def delta_e(rgb_a: ArrayLike, rgb_b: ArrayLike) -> NDArray[np.float32]:
 
     a, b = _flat(rgb_a), _flat(rgb_b)
     result = np.empty(len(a), dtype=np.float32)
-    delta_e_kernel(a, b, to_relative_xyz(), result)
+    delta_e_kernel(len(a), a, b, to_relative_xyz(), result)
     return result.reshape(np.shape(rgb_a)[:-1])
 
 

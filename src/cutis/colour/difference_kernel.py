@@ -8,21 +8,22 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit, prange
 
-BLOCK = 4096
-"""Texels that one task works on."""
+from cutis.kernels.compiling import compiled, on_all_cores
+
+PIECE = 4096
+"""Texels that a thread works on at a time."""
 EPSILON, KAPPA = 216 / 24389, 24389 / 27
 """Where the cube root of CIELAB turns into a line, and how steep that is."""
 POWER_25_7 = 25.0**7
 
 
-@njit(inline="always")
+@compiled(inline=True)
 def _f(t: Any) -> Any:
     return np.cbrt(t) if t > EPSILON else (KAPPA * t + 16.0) / 116.0
 
 
-@njit(cache=True)
+@compiled()
 def relative_lab(red: Any, green: Any, blue: Any, m: Any) -> Any:
     """CIELAB of linear RGB; `m` (3, 3) gives XYZ over that of white."""
     fx = _f(m[0, 0] * red + m[0, 1] * green + m[0, 2] * blue)
@@ -31,7 +32,7 @@ def relative_lab(red: Any, green: Any, blue: Any, m: Any) -> Any:
     return 116.0 * fy - 16.0, 500.0 * (fx - fy), 200.0 * (fy - fz)
 
 
-@njit(cache=True)
+@compiled()
 def _hue(b: Any, a: Any) -> Any:
     """Degrees from 0 to 360; 0 for grey."""
     if a == 0.0 and b == 0.0:
@@ -40,7 +41,7 @@ def _hue(b: Any, a: Any) -> Any:
     return h + 360.0 if h < 0.0 else h
 
 
-@njit(cache=True)
+@compiled()
 def colour_difference(l1: Any, a1: Any, b1: Any, l2: Any, a2: Any, b2: Any) -> Any:
     """CIEDE2000 with k_L = k_C = k_H = 1; equation numbers of Sharma et al."""
     mean = 0.5 * (math.hypot(a1, b1) + math.hypot(a2, b2))  # (3)
@@ -82,21 +83,17 @@ def colour_difference(l1: Any, a1: Any, b1: Any, l2: Any, a2: Any, b2: Any) -> A
     return math.sqrt(max(x * x + y * y + z * z + rt * y * z, 0.0))  # (22)
 
 
-@njit(parallel=True, cache=True)
-def lab_kernel(rgb: Any, m: Any, out: Any) -> None:
+@on_all_cores(PIECE)
+def lab_kernel(start: Any, stop: Any, rgb: Any, m: Any, out: Any) -> None:
     """Fills out (n, 3) with CIELAB of rgb (n, 3)."""
-    n = rgb.shape[0]
-    for block in prange((n + BLOCK - 1) // BLOCK):
-        for i in range(block * BLOCK, min(n, (block + 1) * BLOCK)):
-            out[i, 0], out[i, 1], out[i, 2] = relative_lab(rgb[i, 0], rgb[i, 1], rgb[i, 2], m)
+    for i in range(start, stop):
+        out[i, 0], out[i, 1], out[i, 2] = relative_lab(rgb[i, 0], rgb[i, 1], rgb[i, 2], m)
 
 
-@njit(parallel=True, cache=True)
-def delta_e_kernel(one: Any, two: Any, m: Any, out: Any) -> None:
+@on_all_cores(PIECE)
+def delta_e_kernel(start: Any, stop: Any, one: Any, two: Any, m: Any, out: Any) -> None:
     """Fills out (n,) with the CIEDE2000 of linear RGB one (n, 3) and two (n, 3)."""
-    n = one.shape[0]
-    for block in prange((n + BLOCK - 1) // BLOCK):
-        for i in range(block * BLOCK, min(n, (block + 1) * BLOCK)):
-            l1, a1, b1 = relative_lab(one[i, 0], one[i, 1], one[i, 2], m)
-            l2, a2, b2 = relative_lab(two[i, 0], two[i, 1], two[i, 2], m)
-            out[i] = colour_difference(l1, a1, b1, l2, a2, b2)
+    for i in range(start, stop):
+        l1, a1, b1 = relative_lab(one[i, 0], one[i, 1], one[i, 2], m)
+        l2, a2, b2 = relative_lab(two[i, 0], two[i, 1], two[i, 2], m)
+        out[i] = colour_difference(l1, a1, b1, l2, a2, b2)

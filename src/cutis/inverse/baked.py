@@ -86,7 +86,7 @@ class Baked:
         out = np.empty((len(rgb), count), dtype=np.float32)
         low, high = np.array(self.chart.low), np.array(self.chart.high)
         scale = (np.array(self.chart.cells) / (high - low)).astype(np.float32)
-        look_up(rgb, self._lanes, low.astype(np.float32), scale, RANGES, form, out)
+        look_up(len(rgb), rgb, self._lanes, low.astype(np.float32), scale, RANGES, form, out)
         return out
 
     @cached_property

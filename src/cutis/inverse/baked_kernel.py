@@ -7,20 +7,22 @@ eight lanes for each (`albedo/lanes.py`), then ranges and powers of all.
 from typing import Any
 
 import numpy as np
-from numba import njit, prange
 
 from cutis.albedo.lanes import spline_lanes_8
 from cutis.albedo.spline import cubic_weights, first_node, place_in_cells
 from cutis.inverse.units_kernel import store_units
+from cutis.kernels.compiling import compiled, on_all_cores
 
 BLOCK = 128
-"""Texels that one task works on."""
+"""Texels whose cells and weights are found together."""
+PIECE = 128 * BLOCK
+"""Texels that a thread works on at a time."""
 DARK = np.float32(1e-6)
 """Keeps ratios of black texels finite."""
 ZERO, ONE = np.float32(0), np.float32(1)
 
 
-@njit(fastmath=True, error_model="numpy", cache=True)
+@compiled(fast=True)
 def _load(colours: Any, x: Any) -> None:
     """Chart coordinates a, b, c of colours (n, 3) into the rows of x (3, BLOCK)."""
     for i in range(len(colours)):
@@ -32,7 +34,7 @@ def _load(colours: Any, x: Any) -> None:
         x[2, i] = blue / (blue + green)
 
 
-@njit(fastmath=True, cache=True)
+@compiled(fast=True)
 def _place(x: Any, low: Any, scale: Any, count: Any, at: Any) -> None:
     """Fills at (5, BLOCK) with cell and four weights of coordinates x (BLOCK,) on one axis."""
     cells = np.float32(count)
@@ -41,16 +43,24 @@ def _place(x: Any, low: Any, scale: Any, count: Any, at: Any) -> None:
         at[1, i], at[2, i], at[3, i], at[4, i] = cubic_weights(f)
 
 
-@njit(fastmath=True, cache=True)
+@compiled(fast=True)
 def _store_coordinates(u: Any, out: Any) -> None:
     for i in range(len(out)):
         for p in range(5):
             out[i, p] = min(max(u[i, p], ZERO), ONE)
 
 
-@njit(parallel=True, fastmath=True, cache=True)
+@on_all_cores(PIECE, fast=True)
 def look_up(
-    colours: Any, table: Any, low: Any, scale: Any, ranges: Any, form: Any, out: Any
+    begin: Any,
+    stop: Any,
+    colours: Any,
+    table: Any,
+    low: Any,
+    scale: Any,
+    ranges: Any,
+    form: Any,
+    out: Any,
 ) -> None:
     """Fills out (n, 5) with the skins of colours (n, 3), or (n, m) with what the table holds.
 
@@ -58,13 +68,12 @@ def look_up(
     into cells. By `form`, coordinates are written clamped to [0, 1] (0), as units by `ranges` (1,
     see `units_kernel.py`), or m lanes as they are (2).
     """
-    n = colours.shape[0]
     cells = (table.shape[0] - 3, table.shape[1] - 3, table.shape[2] - 3)
-    for block in prange((n + BLOCK - 1) // BLOCK):
-        x = np.ones((3, BLOCK), dtype=np.float32)
-        at = np.empty((15, BLOCK), dtype=np.float32)
-        u = np.empty((BLOCK, 8), dtype=np.float32)
-        start, end = block * BLOCK, min(n, (block + 1) * BLOCK)
+    x = np.ones((3, BLOCK), dtype=np.float32)
+    at = np.empty((15, BLOCK), dtype=np.float32)
+    u = np.empty((BLOCK, 8), dtype=np.float32)
+    for start in range(begin, stop, BLOCK):
+        end = min(stop, start + BLOCK)
         _load(colours[start:end], x)
         for axis in range(3):
             _place(x[axis], low[axis], scale[axis], cells[axis], at[5 * axis : 5 * axis + 5])
@@ -85,4 +94,6 @@ def look_up(
         elif form == 0:
             _store_coordinates(u, out[start:end])
         else:
-            out[start:end] = u[: end - start, : out.shape[1]]
+            for i in range(end - start):
+                for p in range(out.shape[1]):
+                    out[start + i, p] = u[i, p]

@@ -9,11 +9,9 @@ from collections.abc import Callable
 from typing import Any
 
 from llvmlite import binding, ir
-from numba import types
-from numba.core import cgutils
-from numba.extending import intrinsic
 
 from cutis.albedo.lanes import FLAGS, FLOAT, INDEX, LANE, pointer_to, shape_of, shuffle
+from cutis.kernels.compiling import cgutils, intrinsic, types
 
 OUTPUTS = 7
 """Outputs of a block: a divisor of the paper's 70."""

@@ -65,6 +65,7 @@ def fit(
     prior[np.ix_(free, free)] = precision
     out = np.empty_like(centre)
     fit_kernel(
+        len(c),
         c,
         centre,
         weight.astype(np.float32),

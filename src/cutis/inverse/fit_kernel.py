@@ -3,12 +3,12 @@
 from typing import Any
 
 import numpy as np
-from numba import njit, prange
 
 from cutis.albedo.spline import rgb_and_slope
+from cutis.kernels.compiling import compiled, on_all_cores
 
-BLOCK = 64
-"""Colours that one task works on."""
+PIECE = 64
+"""Colours that a thread works on at a time."""
 EDGE = np.float32(9.0)
 """Bound on logits: 0.0001 from the ends of a range."""
 
@@ -16,7 +16,7 @@ CONVERGED = np.float32(1e-4)
 """Change of the cost, in squared standard deviations of the prior, that ends a fit."""
 
 
-@njit(fastmath=True, cache=True)
+@compiled(fast=True)
 def _evaluate(
     z: Any, weight: Any, colour: Any, root_low: Any, root_span: Any, power: Any, slots: Any,
     model: Any, x: Any, rgb: Any, slope: Any, residual: Any
@@ -39,7 +39,7 @@ def _evaluate(
         residual[c] = (rgb[c] - colour[c]) * weight
 
 
-@njit(fastmath=True, cache=True)
+@compiled(fast=True)
 def _cost(z: Any, slots: Any, centre: Any, precision: Any, residual: Any) -> Any:
     total = np.float32(0)
     for c in range(3):
@@ -50,7 +50,7 @@ def _cost(z: Any, slots: Any, centre: Any, precision: Any, residual: Any) -> Any
     return total
 
 
-@njit(fastmath=True, cache=True)
+@compiled(fast=True)
 def _solve(a: Any, g: Any, slots: Any, step: Any) -> None:
     """step (n,) = −a⁻¹ g by Cholesky, in place; a (n, n) symmetric positive definite."""
     count = len(slots)
@@ -74,34 +74,21 @@ def _solve(a: Any, g: Any, slots: Any, step: Any) -> None:
         step[i] = s / a[i, i]
 
 
-@njit(parallel=True, fastmath=True, cache=True)
+@on_all_cores(PIECE, fast=True)
 def fit_kernel(
-    colours: Any, centres: Any, weights: Any, precision: Any, iterations: Any,
-    root_low: Any, root_span: Any, power: Any, slots: Any, model: Any, out: Any
+    start: Any, stop: Any, colours: Any, centres: Any, weights: Any, precision: Any,
+    iterations: Any, root_low: Any, root_span: Any, power: Any, slots: Any, model: Any, out: Any
 ) -> None:  # fmt: skip
     """Fills out (n, p) with the best logits, by Levenberg–Marquardt from `centres` (n, p).
 
     Minimises |weight (RGB − colour)|² + (z − centre)ᵀ precision (z − centre) of each colour.
     """
-    n = colours.shape[0]
-    for block in prange((n + BLOCK - 1) // BLOCK):
-        _fit_block(
-            block, colours, centres, weights, precision, iterations,
-            root_low, root_span, power, slots, model, out,
-        )  # fmt: skip
-
-
-@njit(fastmath=True, cache=True)
-def _fit_block(
-    block: Any, colours: Any, centres: Any, weights: Any, precision: Any, iterations: Any,
-    root_low: Any, root_span: Any, power: Any, slots: Any, model: Any, out: Any
-) -> None:  # fmt: skip
     count = len(slots)
     x, rgb, residual = np.empty(count, np.float32), np.empty(3, np.float32), np.empty(3, np.float32)
     slope, trial_slope = np.empty((3, count), np.float32), np.empty((3, count), np.float32)
     trial, trial_residual = np.empty(count, np.float32), np.empty(3, np.float32)
     a, g, step = np.empty((count, count)), np.empty(count), np.empty(count)
-    for row in range(block * BLOCK, min(colours.shape[0], (block + 1) * BLOCK)):
+    for row in range(start, stop):
         z, centre, colour, weight = out[row], centres[row], colours[row], weights[row]
         z[:] = centre
         damping = 1e-3

@@ -57,7 +57,7 @@ class KubelkaMunkInverse:
         queries = finite_colours(colours)
         node = self._tree(queries)
         cells = np.stack(np.divmod(node, CELLS[1] + 1), axis=-1).astype(np.float64)
-        nearest_point_kernel(queries, self._table, cells)
+        nearest_point_kernel(len(queries), queries, self._table, cells)
         first, last = self._ends ** (1 / ROOTS)
         return np.clip((first + cells / CELLS * (last - first)) ** ROOTS, *self._ends)
 
@@ -76,7 +76,8 @@ class KubelkaMunkInverse:
         first, last = self._ends ** (1 / ROOTS)
         roots = np.clip(skins[:, :2].astype(np.float64), *self._ends) ** (1 / ROOTS)
         out = np.empty((len(skins), 3), dtype=np.float32)
-        surface_kernel((roots - first) / (last - first) * CELLS, self._table, out)
+        cells = (roots - first) / (last - first) * CELLS
+        surface_kernel(len(skins), cells, self._table, out)
         return out
 
 

@@ -6,17 +6,17 @@ y ∈ [0, n] (see `kubelka_munk.py`).
 
 from typing import Any
 
-from numba import njit, prange
+from cutis.kernels.compiling import compiled, on_all_cores
 
-BLOCK = 1024
-"""Texels that one task works on."""
+PIECE = 1024
+"""Texels that a thread works on at a time."""
 ITERATIONS = 60
 """Most Newton steps, refused ones included."""
 CONVERGED = 1e-6
 """Step, in cells, that ends the search."""
 
 
-@njit(inline="always")
+@compiled(inline=True)
 def _weights(f: Any) -> Any:
     """Cubic B-spline weights at fraction f of a cell, and their first and second derivatives."""
     g = 1.0 - f
@@ -27,13 +27,13 @@ def _weights(f: Any) -> Any:
     )
 
 
-@njit(inline="always")
+@compiled(inline=True)
 def _cell(x: Any, count: Any) -> Any:
     """Index of the cell that x ∈ [0, count − 3] falls in."""
     return min(int(x), count - 4)
 
 
-@njit(cache=True)
+@compiled()
 def _terms(table: Any, x: Any, y: Any, colour: Any) -> Any:
     """Cost ½ |f − c|², its gradient and Hessian, and those of the Hessian's terms JᵀJ."""
     i, j = _cell(x, table.shape[0]), _cell(y, table.shape[1])
@@ -68,7 +68,7 @@ def _terms(table: Any, x: Any, y: Any, colour: Any) -> Any:
     return cost, (gx, gy), (jxx + hxx, jxy + hxy, jyy + hyy), (jxx, jxy, jyy)
 
 
-@njit(inline="always")
+@compiled(inline=True)
 def _step(g: Any, h: Any, free_x: Any, free_y: Any, damping: Any) -> Any:
     """Damped Newton step along the free axes, and whether h is positive definite on them."""
     a, b, d = h[0] * (1 + damping), h[1], h[2] * (1 + damping)
@@ -82,7 +82,7 @@ def _step(g: Any, h: Any, free_x: Any, free_y: Any, damping: Any) -> Any:
     return (0.0, -g[1] / d, True) if d > 0 else (0.0, 0.0, False)
 
 
-@njit(cache=True)
+@compiled()
 def _descend(table: Any, colour: Any, x: Any, y: Any) -> Any:
     """The nearest point downhill from (x, y): Newton with bounds, damped when it does not help."""
     m, n = table.shape[0] - 3.0, table.shape[1] - 3.0
@@ -111,18 +111,14 @@ def _descend(table: Any, colour: Any, x: Any, y: Any) -> Any:
     return x, y
 
 
-@njit(parallel=True, cache=True)
-def nearest_point_kernel(colours: Any, table: Any, cells: Any) -> None:
+@on_all_cores(PIECE)
+def nearest_point_kernel(start: Any, stop: Any, colours: Any, table: Any, cells: Any) -> None:
     """Moves cells (n, 2) to the point of the surface nearest to each colour (n, 3)."""
-    n = len(colours)
-    for block in prange((n + BLOCK - 1) // BLOCK):
-        for row in range(block * BLOCK, min(n, (block + 1) * BLOCK)):
-            cells[row, 0], cells[row, 1] = _descend(
-                table, colours[row], cells[row, 0], cells[row, 1]
-            )
+    for row in range(start, stop):
+        cells[row, 0], cells[row, 1] = _descend(table, colours[row], cells[row, 0], cells[row, 1])
 
 
-@njit(cache=True)
+@compiled()
 def _value(table: Any, x: Any, y: Any, c: Any) -> Any:
     """Channel c of the surface at cell coordinates (x, y)."""
     i, j = _cell(x, table.shape[0]), _cell(y, table.shape[1])
@@ -134,11 +130,9 @@ def _value(table: Any, x: Any, y: Any, c: Any) -> Any:
     return total
 
 
-@njit(parallel=True, cache=True)
-def surface_kernel(cells: Any, table: Any, out: Any) -> None:
+@on_all_cores(PIECE)
+def surface_kernel(start: Any, stop: Any, cells: Any, table: Any, out: Any) -> None:
     """Fills out (n, 3) with the colours of the surface at cells (n, 2)."""
-    n = len(cells)
-    for block in prange((n + BLOCK - 1) // BLOCK):
-        for row in range(block * BLOCK, min(n, (block + 1) * BLOCK)):
-            for c in range(3):
-                out[row, c] = _value(table, cells[row, 0], cells[row, 1], c)
+    for row in range(start, stop):
+        for c in range(3):
+            out[row, c] = _value(table, cells[row, 0], cells[row, 1], c)

@@ -40,7 +40,8 @@ class NearestColour:
 
         points, index, low, high, starts = self._tree
         out = np.empty(len(colours), dtype=np.int64)
-        nearest_kernel(colours, curve_order(colours), points, index, low, high, starts, out)
+        order = curve_order(colours)
+        nearest_kernel(len(order), colours, order, points, index, low, high, starts, out)
         return out
 
 

@@ -36,7 +36,7 @@ class Perceptron:
         x = np.ascontiguousarray(values, dtype=np.float32)
         flat = x.reshape(-1, x.shape[-1])
         out = np.empty((len(flat), len(self.biases[-1])), dtype=np.float32)
-        forward(flat, *self._packed, out)
+        forward(len(flat), flat, *self._packed, out)
         return out.reshape(*x.shape[:-1], out.shape[1])
 
     def reference(self, values: ArrayLike) -> NDArray[np.float64]:

@@ -9,14 +9,14 @@ the form that Eigen uses), which the compiler vectorises.
 from typing import Any
 
 import numpy as np
-from numba import njit, prange
 
 from cutis.inverse.dense_lanes import LANES, OUTPUTS, dense_block
+from cutis.kernels.compiling import compiled, on_all_cores
 
 TILE = 64
 """Texels that go through the layers together."""
 TASK = 16
-"""Tiles that one task works on."""
+"""Tiles that a thread works on at a time."""
 HALF = np.float32(0.5)
 
 P1, P3, P5, P7 = (
@@ -39,7 +39,7 @@ Q0, Q2, Q4, Q6 = (
 LIMIT = np.float32(7.9)
 
 
-@njit(inline="always", fastmath=True)
+@compiled(fast=True, inline=True)
 def _tanh(x: Any) -> Any:
     x = min(max(x, -LIMIT), LIMIT)
     s = x * x
@@ -47,7 +47,7 @@ def _tanh(x: Any) -> Any:
     return x * p / (Q0 + s * (Q2 + s * (Q4 + s * Q6)))
 
 
-@njit(fastmath=True, error_model="numpy", cache=True)
+@compiled(fast=True)
 def _tile(x: Any, weights: Any, biases: Any, sizes: Any, out: Any, a: Any, b: Any) -> None:
     n = x.shape[0]
     for t in range(n):
@@ -73,18 +73,16 @@ def _tile(x: Any, weights: Any, biases: Any, sizes: Any, out: Any, a: Any, b: An
             out[t, o] = a[o, t]
 
 
-@njit(parallel=True, fastmath=True, cache=True)
-def forward(x: Any, weights: Any, biases: Any, sizes: Any, out: Any) -> None:
+@on_all_cores(TILE * TASK, fast=True)
+def forward(start: Any, stop: Any, x: Any, weights: Any, biases: Any, sizes: Any, out: Any) -> None:
     """Fills out (n, outputs) from x (n, inputs).
 
     `weights` (layers, blocks, inputs, OUTPUTS) and `biases` (layers, blocks · OUTPUTS) are padded
     with zeros to one size; `sizes` are the inputs of each layer and the outputs of the last.
     """
-    n, width = x.shape[0], max(weights.shape[2], biases.shape[1])
-    tiles = (n + TILE - 1) // TILE
-    for task in prange((tiles + TASK - 1) // TASK):
-        a = np.zeros((width, TILE), dtype=np.float32)
-        b = np.zeros((width, TILE), dtype=np.float32)
-        for tile in range(task * TASK, min(tiles, (task + 1) * TASK)):
-            low, high = tile * TILE, min(n, tile * TILE + TILE)
-            _tile(x[low:high], weights, biases, sizes, out[low:high], a, b)
+    width = max(weights.shape[2], biases.shape[1])
+    a = np.zeros((width, TILE), dtype=np.float32)
+    b = np.zeros((width, TILE), dtype=np.float32)
+    for low in range(start, stop, TILE):
+        high = min(stop, low + TILE)
+        _tile(x[low:high], weights, biases, sizes, out[low:high], a, b)

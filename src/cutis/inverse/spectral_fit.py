@@ -176,7 +176,8 @@ class SpectralFitter:
         high = np.array([p.high ** (1 / p.root) for p in every], dtype=np.float32)
         axes, model = (low, high - low, power), self.sampled.model
         fit_kernel(
-            y, w, starts, held, ITERATIONS, axes, self.space.slots, model, best, matrices, costs
+            len(y), y, w, starts, held, ITERATIONS, axes, self.space.slots, model, best, matrices,
+            costs,
         )  # fmt: skip
         places = list(self.space.places)
         u = best[:, places]

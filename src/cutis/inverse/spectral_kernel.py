@@ -3,12 +3,12 @@
 from typing import Any
 
 import numpy as np
-from numba import njit, prange
 
 from cutis.albedo.sampled_kernel import spectrum_and_slope
+from cutis.kernels.compiling import compiled, on_all_cores
 
-BLOCK = 8
-"""Spectra that one task works on."""
+PIECE = 8
+"""Spectra that a thread works on at a time."""
 SMALL_STEP = 1e-5
 """Step, in coordinates, that ends a fit."""
 SMALL_GAIN = 1e-7
@@ -17,7 +17,7 @@ FLAT = 1e-14
 """Cost per wavelength below which float32 has nothing left to improve."""
 
 
-@njit(fastmath=True, cache=True)
+@compiled(fast=True)
 def _evaluate(
     u: Any, y: Any, weight: Any, axes: Any, slots: Any, model: Any, x: Any, spectrum: Any,
     slope: Any, residual: Any
@@ -40,7 +40,7 @@ def _evaluate(
     return cost
 
 
-@njit(fastmath=True, cache=True)
+@compiled(fast=True)
 def _normal(slope: Any, residual: Any, weight: Any, slots: Any, a: Any, g: Any) -> None:
     """a (p, p) = Jᵀ W J, g (p,) = Jᵀ W r."""
     a[:] = 0.0
@@ -58,7 +58,7 @@ def _normal(slope: Any, residual: Any, weight: Any, slots: Any, a: Any, g: Any) 
             a[q, p] = a[p, q]
 
 
-@njit(cache=True)
+@compiled()
 def _step(a: Any, g: Any, moves: Any, damping: Any, work: Any, step: Any) -> None:
     """step = −(a + damping diag a)⁻¹ g over the coordinates that move, by Cholesky."""
     count = len(g)
@@ -85,10 +85,10 @@ def _step(a: Any, g: Any, moves: Any, damping: Any, work: Any, step: Any) -> Non
         step[i] /= work[i, i]
 
 
-@njit(cache=True)
+@compiled()
 def _fit_one(
-    y: Any, weight: Any, starts: Any, held: Any, iterations: Any, axes: Any, slots: Any,
-    model: Any, best: Any, matrix: Any
+    y: Any, weight: Any, starts: Any, held: Any, iterations: Any,
+    axes: Any, slots: Any, model: Any, best: Any, matrix: Any
 ) -> Any:  # fmt: skip
     """Fills best (p,) and matrix (p, p) = Jᵀ W J there; returns the cost there."""
     count, length = len(slots), len(y)
@@ -139,10 +139,10 @@ def _fit_one(
     return lowest
 
 
-@njit(parallel=True, cache=True)
+@on_all_cores(PIECE)
 def fit_kernel(
-    spectra: Any, weights: Any, starts: Any, held: Any, iterations: Any, axes: Any, slots: Any,
-    model: Any, best: Any, matrices: Any, costs: Any
+    start: Any, stop: Any, spectra: Any, weights: Any, starts: Any, held: Any, iterations: Any,
+    axes: Any, slots: Any, model: Any, best: Any, matrices: Any, costs: Any
 ) -> None:  # fmt: skip
     """Fits every spectrum (m, n): fills best (m, p), matrices (m, p, p) and costs (m,).
 
@@ -150,10 +150,8 @@ def fit_kernel(
     each of its `starts` (m, s, p); coordinates on a bound that the slope pushes out do not move.
     `held` (p,) stay where they start.
     """
-    m = spectra.shape[0]
-    for block in prange((m + BLOCK - 1) // BLOCK):
-        for row in range(block * BLOCK, min(m, (block + 1) * BLOCK)):
-            costs[row] = _fit_one(
-                spectra[row], weights[row], starts[row], held, iterations, axes, slots, model,
-                best[row], matrices[row],
-            )  # fmt: skip
+    for row in range(start, stop):
+        costs[row] = _fit_one(
+            spectra[row], weights[row], starts[row], held, iterations, axes, slots, model,
+            best[row], matrices[row],
+        )  # fmt: skip

@@ -7,13 +7,13 @@ are linear themselves.
 from typing import Any
 
 import numpy as np
-from numba import njit, prange
 from numpy.typing import NDArray
 
+from cutis.kernels.compiling import compiled, on_all_cores
 from cutis.optics import PARAMETERS
 
-BLOCK = 1024
-"""Skins that one task converts."""
+PIECE = 1 << 14
+"""Skins that a thread converts at a time."""
 THIRD, ZERO, ONE = np.float32(1 / 3), np.float32(0), np.float32(1)
 RANGES = np.array(
     [
@@ -27,7 +27,7 @@ RANGES = np.array(
 """Rows: low end and span of the roots, low and high end of the parameters."""
 
 
-@njit(fastmath=True, cache=True)
+@compiled(fast=True)
 def store_units(coordinates: Any, ranges: Any, out: Any) -> None:
     """Fills out (n, 5) with the parameters of coordinates (n or more, 5 or more), clamped."""
     for i in range(len(out)):
@@ -41,34 +41,29 @@ def store_units(coordinates: Any, ranges: Any, out: Any) -> None:
             out[i, p] = min(max(out[i, p], ranges[2, p]), ranges[3, p])
 
 
-@njit(parallel=True, fastmath=True, cache=True)
-def _to_units(coordinates: Any, ranges: Any, out: Any) -> None:
-    n = len(out)
-    for block in prange((n + BLOCK - 1) // BLOCK):
-        start, end = block * BLOCK, min(n, (block + 1) * BLOCK)
-        store_units(coordinates[start:end], ranges, out[start:end])
+@on_all_cores(PIECE, fast=True)
+def _to_units(start: Any, stop: Any, coordinates: Any, ranges: Any, out: Any) -> None:
+    store_units(coordinates[start:stop], ranges, out[start:stop])
 
 
-@njit(parallel=True, fastmath=True, error_model="numpy", cache=True)
-def _from_units(skins: Any, ranges: Any, out: Any) -> None:
-    n = len(out)
-    for block in prange((n + BLOCK - 1) // BLOCK):
-        for i in range(block * BLOCK, min(n, (block + 1) * BLOCK)):
-            out[i, 0] = (skins[i, 0] ** THIRD - ranges[0, 0]) / ranges[1, 0]
-            out[i, 1] = (np.sqrt(np.sqrt(skins[i, 1])) - ranges[0, 1]) / ranges[1, 1]
-            for p in range(2, 5):
-                out[i, p] = (skins[i, p] - ranges[0, p]) / ranges[1, p]
+@on_all_cores(PIECE, fast=True)
+def _from_units(start: Any, stop: Any, skins: Any, ranges: Any, out: Any) -> None:
+    for i in range(start, stop):
+        out[i, 0] = (skins[i, 0] ** THIRD - ranges[0, 0]) / ranges[1, 0]
+        out[i, 1] = (np.sqrt(np.sqrt(skins[i, 1])) - ranges[0, 1]) / ranges[1, 1]
+        for p in range(2, 5):
+            out[i, p] = (skins[i, p] - ranges[0, p]) / ranges[1, p]
 
 
 def to_units(coordinates: NDArray[np.float32]) -> NDArray[np.float32]:
     """`optics.from_coordinates` of (n, 5) float32."""
     out = np.empty_like(coordinates)
-    _to_units(coordinates, RANGES, out)
+    _to_units(len(out), coordinates, RANGES, out)
     return out
 
 
 def from_units(skins: NDArray[np.float32]) -> NDArray[np.float32]:
     """`optics.to_coordinates` of (n, 5) float32."""
     out = np.empty_like(skins)
-    _from_units(skins, RANGES, out)
+    _from_units(len(out), skins, RANGES, out)
     return out

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from cutis.colour import Space
 from cutis.errors import CutisError
 from cutis.optics import NAMES
 from cutis.textures import TextureFile
@@ -132,14 +133,14 @@ def gaps(captures: Set) -> list[str]:
     return [tile_of(pattern, number).name for number in missing_tiles(numbers)]
 
 
-def odd_ones(captures: Set, colorspace: str = "auto", ocio: str | None = None) -> list[str]:
+def odd_ones(captures: Set, colorspace: Space | None = None) -> list[str]:
     """What to say of captures of a set that are stored unlike most of it: depth, channels, space.
 
     Sizes may differ, as tiles' do. Captures that cannot be read are left to what reads them.
     """
     kinds: dict[Path, str] = {}
     for path in captures if len(captures) > 2 else ():
-        with contextlib.suppress(CutisError), TextureFile(path, colorspace, ocio) as file:
+        with contextlib.suppress(CutisError), TextureFile(path, colorspace or "auto") as file:
             pixels = file.rows(slice(0, 0)).pixels
             kinds[path] = f"{pixels.dtype} {','.join(file.channels)} in {file.space.name}"
     counts = Counter(kinds.values()).most_common()

@@ -8,11 +8,12 @@ import numpy as np
 
 from cutis.errors import CutisError
 from cutis.inverse.calibration import Calibration
-from cutis.inverse.models import tissue_of
+from cutis.inverse.model import Model
 from cutis.luts import lut_files
 from cutis.luts.clf_lut import OFFSET, skin_lut
 from cutis.luts.cube_lut import Space, edit_lut
 from cutis.luts.recolouring import recolouring, title
+from cutis.maps.defaults import DEFAULT, load_model
 from cutis.maps.edits import Edit
 
 
@@ -22,7 +23,7 @@ def export_lut(
     space: Space,
     size: int = 65,
     *,
-    model: str = "default",
+    model: Model | str = DEFAULT,
     calibration: Calibration | None = None,
     amount: float = 1.0,
 ) -> str:
@@ -40,7 +41,7 @@ def export_lut(
         plain = edit_lut(edit, size, space)
         lut_files.write_cube(path, plain.table, plain.shaper, text)
         return text
-    lut = skin_lut(edit, size, space, calibration, tissue_of(model))
+    lut = skin_lut(edit, size, space, calibration, load_model(model).tissue)
     undone = np.linalg.inv(lut.matrix)
     operators = [
         lut_files.logarithm(OFFSET),

@@ -24,7 +24,7 @@ def coordinates(
     low = np.array([p.low ** (1 / p.root) for p in PARAMETERS])
     span = np.array([p.high ** (1 / p.root) for p in PARAMETERS]) - low
     out = np.empty((*where.shape, 5), np.float32)
-    fill(tuple(maps), where, root, low, span, out)
+    fill(len(where), tuple(maps), where, root, low, span, out)
     return out
 
 

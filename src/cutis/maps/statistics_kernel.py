@@ -3,38 +3,46 @@
 from typing import Any
 
 import numpy as np
-from numba import njit, prange
 
 from cutis.colour.difference_kernel import colour_difference, relative_lab
+from cutis.kernels.compiling import compiled, on_all_cores
 
-BLOCK = 2048
-"""Texels that one task works on."""
+PIECE, ROWS = 2048, 16
+"""Texels, and rows of them, that a thread works on at a time."""
 
 
-@njit(parallel=True, cache=True)
+@on_all_cores(PIECE)
 def judge(
-    truth: Any, model: Any, matrix: Any, least: Any, errors: Any, angles: Any, skin: Any
+    start: Any,
+    stop: Any,
+    truth: Any,
+    model: Any,
+    matrix: Any,
+    least: Any,
+    errors: Any,
+    angles: Any,
+    skin: Any,
 ) -> None:
     """Fills skin (n,), and where that is True errors in CIEDE2000 and angles, ITA in degrees.
 
     Of pairs of linear RGB (n, 3), where truth decides what is skin. `least` are L* and C*ab that
     skin lies above, `matrix` (3, 3) gives XYZ over that of white.
     """
-    n = truth.shape[0]
-    for block in prange((n + BLOCK - 1) // BLOCK):
-        for i in range(block * BLOCK, min(n, (block + 1) * BLOCK)):
-            l1, a1, b1 = relative_lab(truth[i, 0], truth[i, 1], truth[i, 2], matrix)
-            skin[i] = l1 > least[0] and a1 * a1 + b1 * b1 > least[1] * least[1]
-            if skin[i]:
-                l2, a2, b2 = relative_lab(model[i, 0], model[i, 1], model[i, 2], matrix)
-                errors[i] = colour_difference(l1, a1, b1, l2, a2, b2)
-                angles[i] = np.degrees(np.arctan2(l1 - 50.0, b1))
+    for i in range(start, stop):
+        l1, a1, b1 = relative_lab(truth[i, 0], truth[i, 1], truth[i, 2], matrix)
+        skin[i] = l1 > least[0] and a1 * a1 + b1 * b1 > least[1] * least[1]
+        if skin[i]:
+            l2, a2, b2 = relative_lab(model[i, 0], model[i, 1], model[i, 2], matrix)
+            errors[i] = colour_difference(l1, a1, b1, l2, a2, b2)
+            angles[i] = np.degrees(np.arctan2(l1 - 50.0, b1))
 
 
-@njit(parallel=True, cache=True)
-def coordinates(maps: Any, inside: Any, root: Any, low: Any, span: Any, out: Any) -> None:
+@on_all_cores(ROWS)
+def coordinates(
+    start: Any, stop: Any, maps: Any, inside: Any, root: Any, low: Any, span: Any, out: Any
+) -> None:
     """Fills out (h, W, 5) with network coordinates of five maps (h, W) where `inside`, else 0."""
-    for row in prange(inside.shape[0]):
+    for row in range(start, stop):
         for p in range(5):
             values = maps[p]
             for column in range(inside.shape[1]):
@@ -49,7 +57,7 @@ def coordinates(maps: Any, inside: Any, root: Any, low: Any, span: Any, out: Any
                 out[row, column, p] = u
 
 
-@njit(cache=True)
+@compiled()
 def count(u: Any, inside: Any, counts: Any) -> None:
     """Adds coordinates (h, W, 5) where `inside` to counts (5, bins)."""
     bins = counts.shape[1]
@@ -61,7 +69,7 @@ def count(u: Any, inside: Any, counts: Any) -> None:
                     counts[p, min(max(place, 0), bins - 1)] += 1
 
 
-@njit(cache=True)
+@compiled()
 def count_spread(
     sigmas: Any, u: Any, inside: Any, root: Any, low: Any, span: Any, width: Any, even: Any,
     share: Any
@@ -85,14 +93,14 @@ def count_spread(
                     share[p, max(min(int(sigma / width[p] * bins), bins - 1), 0)] += 1
 
 
-@njit(parallel=True, cache=True)
-def differences(values: Any, where: Any, sums: Any) -> None:
+@on_all_cores(ROWS)
+def differences(start: Any, stop: Any, values: Any, where: Any, sums: Any) -> None:
     """Fills sums (h, channels), row by row, with differences of neighbours in values (h, W, …).
 
     To the right and below, absolute, where both texels are `where`.
     """
     height, width, channels = values.shape
-    for row in prange(height):
+    for row in range(start, stop):
         for p in range(channels):
             sums[row, p] = 0.0
         for column in range(width):

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutis.colour import LINEAR
-from cutis.maps import Edit
+from cutis.maps import Change
 from cutis.render.skin import Rows, Skin
 from cutis.textures import Frame, Texture, bands, texture_writer
 
@@ -36,8 +36,7 @@ def write_feed(
     skin: Skin,
     path: Path,
     convert: Callable[[Rows], NDArray[np.floating]],
-    edits: Sequence[Edit] = (),
-    amount: float = 1.0,
+    changes: Sequence[Change] = (),
     longest: int = LONGEST,
 ) -> None:
     """Writes what `convert` makes of the skin's rows, (h, W, 3), as an EXR for a renderer.
@@ -49,7 +48,7 @@ def write_feed(
     like = _Reduced((max(height // step, 1), max(width // step, 1)))
     with texture_writer(path, like) as writer:
         for rows in bands(skin.shape, step):
-            colours = np.asarray(convert(skin.rows(rows, edits, amount)), np.float32)
+            colours = np.asarray(convert(skin.rows(rows, changes)), np.float32)
             writer.write(_texture(_means(colours, step)))
 
 

@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 from cutis.colour.difference import LIGHTEST_HAIR, PALEST, to_relative_xyz
 from cutis.errors import CutisError
+from cutis.inverse.calibration import Calibration
+from cutis.inverse.model import Model
 from cutis.maps.skin_maps import SkinMaps
 from cutis.maps.statistics import Histogram, MapStatistics
 from cutis.maps.trust import TrustStatistics
@@ -20,9 +22,9 @@ GAMUT_DELTA_E = 1.0
 class Report:
     """The numbers of a report in the making: `add` the rows of an estimate from top to bottom."""
 
-    def __init__(self, like: SkinMaps, shape: tuple[int, int]) -> None:
-        """Of an estimate with the model and calibration of `like`, (H, W) texels in all."""
-        self._like, self._shape = like, shape
+    def __init__(self, model: Model, calibration: Calibration, shape: tuple[int, int]) -> None:
+        """Of an estimate by a model with a calibration, (H, W) texels in all."""
+        self._model, self._calibration, self._shape = model, calibration, shape
         self._maps, self._trust = MapStatistics(), TrustStatistics()
         self._errors = Histogram(0.0, 100.0)
         self._angles = Histogram(-180.0, 180.0)
@@ -58,20 +60,20 @@ class Report:
 
     def finish(self) -> dict[str, Any]:
         """The numbers; see `report`."""
-        like, statistics = self._like, self._maps
+        statistics, calibration = self._maps, self._calibration
         percentiles, histograms = statistics.percentiles(), statistics.histograms()
-        trust, unsure = self._trust.finish(like.model), self._trust.low_confidence()
+        trust, unsure = self._trust.finish(self._model), self._trust.low_confidence()
         result: dict[str, Any] = {
-            "model": like.model,
+            "model": self._model.name,
             "size": list(self._shape),
             "masked_texels": self._masked,
             "skin_texels": self._errors.count,
             "below_0": self._below,
             "above_1": self._above,
             "calibration": {
-                "gains": [round(g, 5) for g in like.calibration.gains],
-                "origin": like.calibration.origin,
-                "illuminant": like.calibration.light,
+                "gains": [round(g, 5) for g in calibration.gains],
+                "origin": calibration.origin,
+                "illuminant": calibration.light,
             },
             "maps": {
                 name: {
@@ -113,7 +115,7 @@ def report(skin: SkinMaps) -> dict[str, Any]:
     `informed`: 1 − σ / σ of the prior in network coordinates, 1 where all is known and 0 where the
     colour said nothing.
     """
-    running = Report(skin, skin.shape)
+    running = Report(skin.model, skin.calibration, skin.shape)
     running.add(skin)
     return running.finish()
 
@@ -126,7 +128,8 @@ def judged(
 
     errors, angles = np.zeros(len(truth), np.float32), np.zeros(len(truth), np.float32)
     skin = np.zeros(len(truth), np.bool_)
-    judge(truth, model, to_relative_xyz(), (LIGHTEST_HAIR, PALEST), errors, angles, skin)
+    least = LIGHTEST_HAIR, PALEST
+    judge(len(truth), truth, model, to_relative_xyz(), least, errors, angles, skin)
     return errors, angles, skin
 
 
@@ -146,7 +149,7 @@ class Smoothness:
 
         for values, total in ((u, self._maps), (source, self._colour)):
             sums = np.empty((len(values), values.shape[2]))
-            differences(np.ascontiguousarray(values), where, sums)
+            differences(len(sums), np.ascontiguousarray(values), where, sums)
             total += sums.sum(axis=0)
         if self._last is not None:  # from the last row of what came before to the first of this
             both = self._last[0] & where[0]

@@ -3,6 +3,7 @@
 Previews are for the eye; the numbers are in the EXR.
 """
 
+import contextlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -10,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutis.colour import delta_e
+from cutis.errors import CutisError
 from cutis.inverse import Calibration
-from cutis.maps import SkinMaps
+from cutis.maps import MapsFile, SkinMaps, find_source, open_source
 from cutis.maps.trust import CONFIDENCE, LOW, SIGMA
 from cutis.optics import PARAMETERS, Parameter
 from cutis.report.appearance import COLOUR_MAPS
@@ -42,7 +44,7 @@ class Previews:
 
     def add(self, skin: SkinMaps) -> None:
         """The next rows."""
-        rows = slice(-skin.first_row % self._step, None, self._step)
+        rows = slice(-skin.maps.whole.first_row % self._step, None, self._step)
         for name, values in self._seen(skin).items():
             self._parts.setdefault(name, []).append(values[rows, :: self._step].copy())
 
@@ -73,13 +75,13 @@ class Previews:
             self._whole = whole
         return self._whole
 
-    def write(self, stem: Path) -> None:
+    def write(self, stem: Path) -> list[Path]:
         """Writes `stem`.<map>.png for the five maps and, with the capture, `stem`.error.png.
 
         Where the model knows them, `stem`.sigma.png shows σ of all maps side by side, and
-        `stem`.confidence.png how likely each colour is one of skin.
+        `stem`.confidence.png how likely each colour is one of skin. Returns what it wrote.
         """
-        pictures = self.pictures()
+        pictures, written = self.pictures(), []
         for known in PARAMETERS:
             values = pictures[known.name]
             low, high = known.low, known.high
@@ -88,16 +90,38 @@ class Previews:
             unit = "" if known.unit == "1" else f" [{known.unit}]"
             label, colours = f"{known.meaning}{unit}", COLOUR_MAPS[known.name]
             path = Path(f"{stem}.{known.name}.png")
+            written.append(path)
             _figure(path, values, label, colours, (low, high), known.root)
         if "error" in pictures:
             label = "model against capture [ΔE00]"
-            _figure(Path(f"{stem}.error.png"), pictures["error"], label, "magma", (0.0, 2.0))
+            written.append(Path(f"{stem}.error.png"))
+            _figure(written[-1], pictures["error"], label, "magma", (0.0, 2.0))
         if CONFIDENCE in pictures:
             label, values = "confidence that the colour is one of skin", pictures[CONFIDENCE]
-            _figure(Path(f"{stem}.confidence.png"), values, label, "viridis", (0.0, 1.0))
+            written.append(Path(f"{stem}.confidence.png"))
+            _figure(written[-1], values, label, "viridis", (0.0, 1.0))
         sigmas = [known for known in PARAMETERS if known.name + SIGMA in pictures]
         if sigmas:
-            _sheet(Path(f"{stem}.sigma.png"), sigmas, pictures)
+            written.append(Path(f"{stem}.sigma.png"))
+            _sheet(written[-1], sigmas, pictures)
+        return written
+
+
+def previews_of(maps: Path) -> dict[str, NDArray[np.float32]]:
+    """Reduced pictures of a file of maps, with its capture where that is at hand."""
+    with contextlib.ExitStack() as stack:
+        file = stack.enter_context(MapsFile(maps))
+        capture = None
+        with contextlib.suppress(CutisError):
+            source = find_source(file.provenance, maps)
+            capture = stack.enter_context(open_source(file.provenance, source))
+        previews = Previews(file.header.calibration, file.shape)
+        for rows in file.bands():
+            skin = file.rows(rows)
+            if capture is not None:
+                skin = skin.with_capture(capture.rows(rows).linear())
+            previews.add(skin)
+    return previews.pictures()
 
 
 def _sheet(

@@ -1,8 +1,10 @@
 """Colour spaces of OpenColorIO configurations: names, aliases and roles."""
 
+import hashlib
 import os
 from dataclasses import dataclass, field
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -49,6 +51,13 @@ class OcioSpace:
     config: str | None = None
     chromaticities: tuple[float, ...] | None = field(default=None, compare=False)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Travels to other processes by name; what arrives is checked to be the same."""
+        config = self.config
+        if config is not None and "://" not in config:
+            config = os.path.abspath(config)
+        return _reopened, (self.name, config, _content(config))
+
     def to_linear_srgb(self, values: ArrayLike) -> NDArray[np.floating]:
         """(..., 3) stored values → linear sRGB, float32."""
         return self.connection.to_linear_srgb(_applied(self.to, values))
@@ -56,6 +65,25 @@ class OcioSpace:
     def from_linear_srgb(self, rgb: ArrayLike) -> NDArray[np.floating]:
         """(..., 3) linear sRGB → stored values, float32."""
         return _applied(self.back, self.connection.from_linear_srgb(rgb))
+
+
+def _content(config: str | None) -> str:
+    """SHA-256 of a configuration's file; empty for those that come with OpenColorIO."""
+    if config is None or "://" in config:
+        return ""
+    return hashlib.sha256(Path(config).read_bytes()).hexdigest()
+
+
+def _reopened(name: str, config: str | None, content: str) -> Space:
+    """A space that came from another process; CutisError where it is another one here."""
+    try:
+        same = _content(config) == content
+    except OSError as error:
+        raise CutisError(f"{config}: {error.strerror}; all processes need this file") from error
+    found = ocio_space(name, config) if same else None
+    if found is None:
+        raise CutisError(f"{config}: another configuration than where this work was started")
+    return found
 
 
 def _applied(processor: Any, values: ArrayLike) -> NDArray[np.float32]:

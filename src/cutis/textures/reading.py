@@ -6,6 +6,7 @@ from pathlib import Path
 
 import OpenImageIO as oiio
 
+from cutis.colour.spaces import Space
 from cutis.errors import CutisError
 from cutis.textures.closing import Closing
 from cutis.textures.declared import declared_space
@@ -34,7 +35,7 @@ class TextureFile(Closing):
     def __init__(
         self,
         path: str | os.PathLike[str],
-        colorspace: str = "auto",
+        colorspace: str | Space = "auto",
         ocio: str | None = None,
         orientation: Orientation = "auto",
     ) -> None:
@@ -46,7 +47,7 @@ class TextureFile(Closing):
             self.close()
             raise error if isinstance(error, CutisError) else problem(path, str(error)) from error
 
-    def _describe(self, colorspace: str, ocio: str | None) -> None:
+    def _describe(self, colorspace: str | Space, ocio: str | None) -> None:
         spec, path = self._source.spec, self.path
         self.spec: oiio.ImageSpec = spec
         self.format = self._source.file_format
@@ -71,7 +72,8 @@ class TextureFile(Closing):
             )
             self.notes += notes
         else:
-            self.space, self.origin = colour_space(colorspace, ocio), "given"
+            given = colour_space(colorspace, ocio) if isinstance(colorspace, str) else colorspace
+            self.space, self.origin = given, "given"
 
     def close(self) -> None:
         """Lets go of the file."""
@@ -100,13 +102,13 @@ class TextureFile(Closing):
 
 def read_texture(
     path: str | os.PathLike[str],
-    colorspace: str = "auto",
+    colorspace: str | Space = "auto",
     ocio: str | None = None,
     orientation: Orientation = "auto",
 ) -> Texture:
     """The texture in a file, in its stored type and with all its channels and metadata.
 
-    `colorspace` names the space of the colours (`textures.colour_space`), in the OpenColorIO
+    `colorspace` is or names the space of the colours (`textures.colour_space`), in the OpenColorIO
     configuration `ocio` if given. With "auto" what the file says counts (`declared_space`); where
     it says nothing, integers are encoded sRGB and floats linear sRGB. 10 and 12 bit files come as
     uint16, double as float32. Of several pictures in a file the first full-size one in RGB is read.

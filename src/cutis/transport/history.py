@@ -1,6 +1,6 @@
 """One photon's history in a stack of layers, written once for every device.
 
-`make_history(compile)` builds the history out of functions compiled by `compile`: Numba's `njit`
+`make_history(compile)` builds the history out of functions compiled by `compile`: `compiled()`
 for the processor (`monte_carlo_kernel.py`), `cuda.jit(device=True)` for a graphics card
 (`monte_carlo_cuda.py`). It is the random walk of [wang1992mcml] in a plane (dimension 2) or in
 space (3), with photons that lose weight instead of dying. All layers share one refractive index: a

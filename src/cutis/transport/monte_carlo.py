@@ -190,7 +190,7 @@ def walk_absorptions(
         count = -(-(part.stop - part.start) // BLOCK)
         partial, partial_squares = np.zeros((2, count, top.size, bottom.size))
         absorptions_kernel(
-            stack, _streams([stream], 1)[0], np.uint64(seed), part.start, part.stop, BLOCK,
+            count, stack, _streams([stream], 1)[0], np.uint64(seed), part.start, part.stop, BLOCK,
             dimension, beam, top, bottom, partial, partial_squares,
         )  # fmt: skip
         sums += partial.sum(axis=0)
@@ -218,8 +218,9 @@ def _runner(device: str) -> Callable[..., tuple[Array, Array]]:
         blocks = -(-(stop - first) // BLOCK)
         sums, squares = np.zeros((2, blocks, len(stacks), stacks.shape[1] + 2))
         walk_kernel(
-            stacks, streams, key, first, stop, BLOCK, dimension, index, incidence, sums, squares
-        )
+            blocks * len(stacks), stacks, streams, key, first, stop, BLOCK,
+            dimension, index, incidence, sums, squares,
+        )  # fmt: skip
         return sums, squares
 
     return run

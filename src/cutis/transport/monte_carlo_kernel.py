@@ -3,16 +3,16 @@
 from typing import Any
 
 import numpy as np
-from numba import njit, prange
 
+from cutis.kernels.compiling import compiled, on_all_cores
 from cutis.transport.history import make_history
 
-_history = make_history(njit)
+_history = make_history(compiled())
 
 
-@njit(parallel=True, cache=True)
+@on_all_cores(1)
 def walk_kernel(
-    stacks: Any, streams: Any, key: Any, first: Any, stop: Any, block: Any,
+    begin: Any, end: Any, stacks: Any, streams: Any, key: Any, first: Any, stop: Any, block: Any,
     dimension: Any, index: Any, incidence: Any, sums: Any, squares: Any
 ) -> None:  # fmt: skip
     """Adds to sums, squares (blocks, n, L + 2) what photons `first` to `stop` score, and squared.
@@ -21,11 +21,12 @@ def walk_kernel(
     not what it is filled with.
     """
     cases, scored = stacks.shape[0], sums.shape[2]
-    for task in prange(sums.shape[0] * cases):
+    for task in range(begin, end):
         part, case = task // cases, task % cases
         score = np.zeros(2 + 2 * stacks.shape[1])
         for photon in range(first + part * block, min(stop, first + (part + 1) * block)):
-            score[:] = 0.0
+            for i in range(len(score)):
+                score[i] = 0.0
             _history(
                 np.uint64(photon), streams[case], key, stacks[case],
                 dimension, index, incidence, score,
@@ -35,9 +36,9 @@ def walk_kernel(
                 squares[part, case, i] += score[i] * score[i]
 
 
-@njit(parallel=True, cache=True)
+@on_all_cores(1)
 def absorptions_kernel(
-    stack: Any, stream: Any, key: Any, first: Any, stop: Any, block: Any,
+    begin: Any, end: Any, stack: Any, stream: Any, key: Any, first: Any, stop: Any, block: Any,
     dimension: Any, incidence: Any, top: Any, bottom: Any, sums: Any, squares: Any
 ) -> None:  # fmt: skip
     """Adds to sums, squares (blocks, E, D) the reflected weights of one set of paths.
@@ -45,11 +46,12 @@ def absorptions_kernel(
     `stack` (2, 4) with the least absorption of each layer; `top` (E,), `bottom` (D,) further
     absorption over extinction, by which longer paths are worth less (Beer–Lambert).
     """
-    for part in prange(sums.shape[0]):
+    for part in range(begin, end):
         score = np.zeros(6)
         low, high = np.empty(len(top)), np.empty(len(bottom))
         for photon in range(first + part * block, min(stop, first + (part + 1) * block)):
-            score[:] = 0.0
+            for i in range(len(score)):
+                score[i] = 0.0
             _history(np.uint64(photon), stream, key, stack, dimension, 1.0, incidence, score)
             if score[0] == 0.0:
                 continue
