@@ -17,7 +17,7 @@ from cutis.errors import CutisError
 from cutis.inverse import Model
 from cutis.inverse.calibration import Exposure, White
 from cutis.inverse.model import content_digest
-from cutis.jobs.files import check_outputs, made_folder
+from cutis.jobs.files import made_folder
 from cutis.jobs.job import Told, digest_of, tell, told
 from cutis.jobs.results import FILES, MADE_FROM, Found, alone, look, made_from
 from cutis.maps import FileCapture, Header, Surveyed, estimate_bands, load_model, survey
@@ -179,14 +179,10 @@ class EstimateJob:
             mask = None if capture.mask is None else MaskFile(capture.mask, texture.shape)
             yield FileCapture(texture, None if mask is None else stack.enter_context(mask))
 
-    def check_names(self, capture: CaptureFiles) -> None:
-        """CutisError where a result of a capture would overwrite what is read."""
+    def outputs(self, capture: CaptureFiles) -> list[Path]:
+        """All files that may come of a capture."""
         stem = self.stem(capture)
-        inputs: dict[str, Path | None] = {}
-        for one in self.captures:
-            inputs[f"the capture {one.face.name}"] = one.face
-            inputs |= {"the mask": one.mask, "the picture of regions": one.regions}
-        check_outputs([Path(f"{stem}{end}") for end in ENDS], inputs)
+        return [Path(f"{stem}{end}") for end in ENDS]
 
     def _write(
         self, capture: CaptureFiles, known: Surveyed, asked: Asked, progress: Progress
