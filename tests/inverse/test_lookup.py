@@ -13,7 +13,7 @@ from cutis.inverse.lookup import (
     lookup_tensor,
     tensor_of_spectra,
 )
-from cutis.inverse.nearest import curve_order
+from cutis.kernels.nearest import curve_order
 from cutis.optics import PARAMETERS, to_coordinates
 
 SMALL = (16, 12, 3, 2, 2)

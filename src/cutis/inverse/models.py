@@ -25,7 +25,7 @@ from cutis.inverse.device import check_device, torch_network
 from cutis.inverse.lookup import SHAPES, lookup_tensor
 from cutis.inverse.network import Autoencoder, Perceptron, load_weights
 from cutis.inverse.prior import SkinPrior, load_prior
-from cutis.optics import ALIAGA2022, MEASURED2026, PARAMETERS, Tissue
+from cutis.optics import ALIAGA2022, MEASURED2026, PARAMETERS, Tissue, axes
 
 EXACT, MEASURED = "aliaga2022-exact", "measured2026"
 DEFAULT = MEASURED
@@ -199,17 +199,19 @@ def networks(name: str) -> Autoencoder:
 
 
 def _from_networks(name: str, pair: Autoencoder, device: str) -> Model:
-    from cutis.inverse.units_kernel import from_units
+    from cutis.kernels.warp_kernel import to_coordinates
 
+    ranges = axes().astype(np.float32)
     encoder: Conversion = pair.encoder
     decoder: Conversion = pair.decoder
     if device != "cpu":
         encoder, decoder = (torch_network(n, device) for n in (pair.encoder, pair.decoder))
-    return Model(name, _in_units(encoder), lambda skins: decoder(from_units(skins)))
+    return Model(name, _in_units(encoder), lambda skins: decoder(to_coordinates(skins, ranges)))
 
 
 def _in_units(encode: Conversion) -> Conversion:
     """What gives network coordinates, giving parameters in their units."""
-    from cutis.inverse.units_kernel import to_units
+    from cutis.kernels.warp_kernel import to_units
 
-    return lambda colours: to_units(encode(colours))
+    ranges = axes().astype(np.float32)
+    return lambda colours: to_units(encode(colours), ranges)
