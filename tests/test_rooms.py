@@ -32,13 +32,14 @@ SHARED = {"errors"}
 SLOW = {
     "torch": {"inverse.training"},
     "colour": set(),
+    "jinja2": set(),
     "matplotlib": set(),
     "onnx": set(),
     "onnxruntime": set(),
 }
 """Packages imported only inside functions, and the modules exempt from that."""
 NOT_ROOMS = {"data"}
-TESTS_OF_NO_ROOM = {"studies", "validation"}
+TESTS_OF_NO_ROOM = {"benchmarks", "studies", "validation"}
 
 
 def module_name(path: Path, package: Path) -> str:
