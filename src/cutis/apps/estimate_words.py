@@ -10,9 +10,14 @@ if TYPE_CHECKING:
     from cutis.jobs.estimate import Estimated, EstimateJob
 
 
-def say(sets: "Sequence[EstimateJob]", found: "Sequence[Estimated]") -> None:
-    """Prints what was found: all of one capture, a line for each of many."""
+def say(
+    sets: "Sequence[EstimateJob]", found: "Sequence[Estimated]", doubts: Sequence[str] = ()
+) -> None:
+    """Prints what was found: all of one capture, a line for each of many; `doubts` come first."""
     from cutis.jobs.inputs import gaps, odd_ones
+
+    for doubt in doubts:
+        out.say(doubt)
 
     for job in sets:
         captures = tuple(one.face for one in job.captures)
@@ -44,6 +49,8 @@ def _say_many(sets: "Sequence[EstimateJob]", found: "Sequence[Estimated]") -> No
             f"ΔE00 {colour['delta_e_mean']:.3f}, out of gamut {100 * colour['out_of_gamut']:.1f} %"
         )  # fmt: skip
         out.say(f"{outcome.face.name}: {error}")
+        for note in outcome.report.get("notes", ()):
+            out.say(f"{outcome.face.name}: {note}")
     skipped = sum(outcome.there for outcome in found)
     left = f", {skipped} were there already" if skipped else ""
     total = sum(len(job.captures) for job in sets)
@@ -55,6 +62,8 @@ def say_one(results: dict[str, Any], white: bool = False) -> None:
     gains = ", ".join(f"{g:.3f}" for g in results["calibration"]["gains"])
     light = results["calibration"]["illuminant"]
     out.say(f"colour space: {results['colorspace']}")
+    for note in results.get("notes", ()):
+        out.say(note)
     out.say(
         f"gains {gains} ({results['calibration']['origin']}), model {results['model']}"
         + (f", captured under {light}" if light != "D65" else "")

@@ -60,10 +60,10 @@ class Decoder(Closing):
     asked for, except for formats whose decoders hold a whole image (interlaced PNG, PSD) and for
     pictures that are stored turned. Close it, or use it in a with block.
 
-    Rows are those of the picture as viewers show it: turned as its `orientation` tag says, unless
-    that is to be ignored. `frame` says where texels lie on it, `spec` is the header as it would be
-    of an upright picture, `notes` say in words what was done. Of several pictures in the file the
-    first full-size one that is `usable` is read.
+    Rows are those of the picture as viewers show it: turned as its orientation tag says (`turned`,
+    1 for not at all), unless that is to be ignored. `frame` says where texels lie on it, `spec` is
+    the header as it would be of an upright picture, `notes` say in words what was done. Of several
+    pictures in the file the first full-size one that is `usable` is read.
 
     Raises CutisError, in one line, for a file that is missing or not whole, too large, deep, CMYK,
     or of a sample type that cannot be kept; what is not whole may show only at the rows concerned.
@@ -103,11 +103,10 @@ class Decoder(Closing):
     def _turn(self, orientation: Orientation) -> None:
         """Decides how the picture is turned, and describes it."""
         stored = self._stored
-        self.orientation = 1
         number, notes = orientation_of(stored, self.header, self.part, orientation)
         self.notes += notes
         self.spec = stored if number == 1 else turned(stored, number)
-        self.orientation = number
+        self.turned = number
         self.frame = frame_of(self.spec, self.file_format)
         together = int(stored.get_int_attribute("oiio:RowsPerChunk", 1))
         self.step = stored.tile_height or min(max(1, together), stored.height)
@@ -136,12 +135,12 @@ class Decoder(Closing):
         top, bottom, _ = rows.indices(self.spec.height)
         if bottom <= top:
             return np.empty((0, self.spec.width, self.spec.nchannels), self.dtype)
-        if self.orientation == 1:
+        if self.turned == 1:
             return self._rows(top, bottom)
         if self._whole is None:
             check_memory(self.path, self._stored, self.stored_as)
             self._whole = self._rows(0, self._stored.height)
-        return np.ascontiguousarray(upright(self._whole, self.orientation)[top:bottom])
+        return np.ascontiguousarray(upright(self._whole, self.turned)[top:bottom])
 
     def _rows(self, top: int, bottom: int) -> NDArray[np.generic]:
         """Rows as they are stored."""

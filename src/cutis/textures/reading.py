@@ -51,7 +51,7 @@ class TextureFile(Closing):
         spec, path = self._source.spec, self.path
         self.spec: oiio.ImageSpec = spec
         self.format = self._source.file_format
-        self.frame = self._source.frame
+        self.frame, self.turned = self._source.frame, self._source.turned
         self.shape = self._source.shape
         self.notes = list(self._source.notes)
         self.channels = tuple(spec.channelnames)
@@ -74,6 +74,9 @@ class TextureFile(Closing):
         else:
             given = colour_space(colorspace, ocio) if isinstance(colorspace, str) else colorspace
             self.space, self.origin = given, "given"
+            config = getattr(given, "config", None)
+            if config:
+                self.notes.append(f"its colour space {given.name} is that of {config}")
 
     def close(self) -> None:
         """Lets go of the file."""
@@ -91,7 +94,7 @@ class TextureFile(Closing):
             check_finite(self.path, pixels[..., column : column + 1], top)
         return Texture(
             pixels, self.channels, self.space, self.path, self.spec, self.format, self.associated,
-            self.origin, self._source.orientation,
+            self.origin, self._source.turned, self.orientation,
         )  # fmt: skip
 
     def read(self) -> Texture:

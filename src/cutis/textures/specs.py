@@ -49,7 +49,7 @@ def header(source: Texture, fitted: Texture, file_format: str, frame: Frame) -> 
         frame.to(spec)
         spec.tile_width = spec.tile_height = spec.tile_depth = 0
     if same_format:
-        spec = turned(spec, source.orientation)
+        spec = turned(spec, source.turned)
     spec.nchannels, spec.depth, spec.full_depth = count, 1, 1
     spec.channelnames = fitted.channels
     spec.set_format(oiio.TypeDesc(_type_name(fitted.pixels)))
