@@ -156,12 +156,15 @@ def source_note(source: TextureFile | Texture) -> dict[str, str]:
     return {**note, "source_ocio": config if "://" in config else Path(config).resolve().as_posix()}
 
 
-def open_source(provenance: Mapping[str, str], capture: Path) -> TextureFile:
-    """The capture that maps were made from, opened and understood as it was then."""
+def open_source(provenance: Mapping[str, str], capture: Path, shown: bool = False) -> TextureFile:
+    """The capture that maps were made from, opened and understood as it was then.
+
+    With `shown` its rows are those of the whole picture (`TextureFile`).
+    """
     space = provenance.get("source_colorspace", "auto")
     # the configuration of then, or none: $OCIO may have changed since
     config, turning = provenance.get("source_ocio", ""), orientation_of(provenance)
-    return TextureFile(capture, space, config, turning)
+    return TextureFile(capture, space, config, turning, shown)
 
 
 def orientation_of(provenance: Mapping[str, str]) -> Orientation:

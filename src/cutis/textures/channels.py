@@ -115,13 +115,14 @@ class ChannelFile(Closing):
     """An open OpenEXR file of named channels (its first part), read some rows at a time.
 
     `names` are its channels, `frame` says where they lie on their picture, `metadata` what the
-    header says, as text or numbers; other metadata is left out. Raises CutisError, one line that
-    names the file, if it cannot be read or is no OpenEXR file. Close it, or use it in a with block.
+    header says, as text or numbers; other metadata is left out. With `shown` its rows are those of
+    the picture, 0 where nothing is stored. Raises CutisError, one line that names the file, if it
+    cannot be read or is no OpenEXR file. Close it, or use it in a with block.
     """
 
-    def __init__(self, path: str | os.PathLike[str]) -> None:
+    def __init__(self, path: str | os.PathLike[str], shown: bool = False) -> None:
         self.path = Path(path)
-        self._source = Decoder(self.path)
+        self._source = Decoder(self.path, shown=shown)
         kind = self._source.file_format
         if kind != "openexr":
             self.close()

@@ -28,8 +28,9 @@ class TextureFile(Closing):
     """An open texture: what its header says, and its rows on demand.
 
     See `read_texture` for what is read and how, and for errors, which may show only at the rows
-    concerned. `notes` say in words what was chosen or not believed. Close it, or use it in a with
-    block.
+    concerned. `notes` say in words what was chosen or not believed. With `shown` the rows of an
+    OpenEXR are those of its display window, 0 where nothing is stored. Close it, or use it in a
+    with block.
     """
 
     def __init__(
@@ -38,9 +39,10 @@ class TextureFile(Closing):
         colorspace: str | Space = "auto",
         ocio: str | None = None,
         orientation: Orientation = "auto",
+        shown: bool = False,
     ) -> None:
         self.path, self.orientation = Path(path), orientation
-        self._source = Decoder(self.path, orientation, has_colour)
+        self._source = Decoder(self.path, orientation, has_colour, shown)
         try:
             self._describe(colorspace, ocio)
         except ValueError as error:
