@@ -14,7 +14,7 @@ from cutis.albedo import albedo_space, uniform
 from cutis.colour import delta_e, is_skin_colour
 from cutis.maps import load_model
 from cutis.optics import NAMES, to_coordinates
-from cutis.report import numbers as report
+from cutis.report import gathering as report
 from studies.figures.subjects import data_folder
 from studies.pages import rewrite
 

@@ -2,7 +2,7 @@
 
 Six skins, light to dark, as they are and with six edits of blood and melanin, under three lights:
 126 pictures. A run that was stopped goes on where it was (pictures are kept in build/renders).
-Needs Blender: `make blender`.
+Needs Blender: `make setup-render`.
 """
 
 import argparse
@@ -24,6 +24,7 @@ from cutis.render.heads import Head, head
 from cutis.render.scene import Scene
 from cutis.textures import read_texture
 from studies.figures.edits import DARK, LABELS, LIGHT
+from studies.generated import record
 from studies.pages import rewrite
 
 ROOT = Path(__file__).parents[1]
@@ -126,6 +127,7 @@ def main() -> None:
                 table.append(f"| {light} | {subject.label} | {cells} |")
                 bar.advance(task)
             sheet(rows, labels).save(PAGE / f"grid-{light}.jpg", quality=88)
+            record(PAGE / f"grid-{light}.jpg")
     rewrite("render.md", grid="\n".join(table))
 
 

@@ -13,11 +13,11 @@ from cutis.colour import delta_e, reflectance_to_rgb, spectrum_to_rgb, upsample
 from cutis.colour.observer import wavelengths
 from cutis.inverse import SpectralFitter
 from cutis.inverse.prior import unit_slopes
-from cutis.inverse.prior_training import train_prior
 from cutis.inverse.shipped import EXACT
 from cutis.maps import DEFAULT, load_model
 from cutis.optics import ALIAGA2022, MEASURED2026, Tissue, from_coordinates, to_coordinates
 from studies.figures.measured import BANDS, NIST, ArchivedSkins
+from studies.prior_training import train_prior
 
 Array = np.ndarray
 TISSUES = (ALIAGA2022, MEASURED2026)

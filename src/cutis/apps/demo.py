@@ -51,6 +51,6 @@ def demo(
         notes = ["Edited: tanned, melanin +40 %, all of it pheomelanin.", CREDIT]
         write_report(output / "index.html", found.report, pictures, CAPTURE, notes)
     if not quiet:
-        say_one(found.report, True)
+        say_one(found.report, capture.face, maps)
         out.say(f"wrote the tanned face to {tanned}")
         out.say(f"open {output / 'index.html'}")

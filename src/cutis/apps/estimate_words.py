@@ -1,13 +1,15 @@
 """What `cutis estimate` says of its results."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from cutis.apps.console import out, print_statistics
-from cutis.report.trust_words import lines
+from cutis.report import summary
 
 if TYPE_CHECKING:
     from cutis.jobs.estimate import Estimated, EstimateJob
+    from cutis.report import Report
 
 
 def say(
@@ -32,24 +34,20 @@ def say(
     if not alone:
         _say_many(sets, found)
     elif found and found[0].report is not None:
-        say_one(found[0].report, sets[0].white == "auto")
         stem = sets[0].stem(sets[0].captures[0])
         if found[0].there:
             out.say(f"{stem}.skin.exr was there already, made the same way; --again makes it anew")
         else:
             out.say(f"wrote {stem}.skin.exr and what belongs to it")
+        say_one(found[0].report, found[0].face, Path(f"{stem}.skin.exr"))
 
 
 def _say_many(sets: "Sequence[EstimateJob]", found: "Sequence[Estimated]") -> None:
     new = [outcome for outcome in found if outcome.report is not None and not outcome.there]
     for outcome in new:
         assert outcome.report is not None
-        colour = outcome.report.get("colour")
-        error = "no skin colours" if colour is None else (
-            f"ΔE00 {colour['delta_e_mean']:.3f}, out of gamut {100 * colour['out_of_gamut']:.1f} %"
-        )  # fmt: skip
-        out.say(f"{outcome.face.name}: {error}")
-        for note in outcome.report.get("notes", ()):
+        out.say(f"{outcome.face.name}: {summary.line(outcome.report)}")
+        for note in outcome.report.notes:
             out.say(f"{outcome.face.name}: {note}")
     skipped = sum(outcome.there for outcome in found)
     left = f", {skipped} were there already" if skipped else ""
@@ -57,44 +55,10 @@ def _say_many(sets: "Sequence[EstimateJob]", found: "Sequence[Estimated]") -> No
     out.say(f"{len(new)} of {total} estimated into {sets[0].output}{left}")
 
 
-def say_one(results: dict[str, Any], white: bool = False) -> None:
-    """Prints what was found in one capture; `white` says whether gains were looked for."""
-    gains = ", ".join(f"{g:.3f}" for g in results["calibration"]["gains"])
-    light = results["calibration"]["illuminant"]
-    out.say(f"colour space: {results['colorspace']}")
-    for note in results.get("notes", ()):
-        out.say(note)
-    out.say(
-        f"gains {gains} ({results['calibration']['origin']}), model {results['model']}"
-        + (f", captured under {light}" if light != "D65" else "")
-    )
-    print_statistics(
-        (name, row["unit"], row["p5"], row["median"], row["p95"])
-        for name, row in results["maps"].items()
-    )
-    for key, what in (("below_0", "negative"), ("above_1", "above one")):
-        if results[key]:
-            out.say(f"{results[key]:,} texels have a colour {what}, which is no albedo")
-    colour = results.get("colour")
-    if colour is None:
-        out.say("no texel inside the mask has the colour of skin; check mask and colour space")
-        return
-    share = results["skin_texels"] / results["masked_texels"]
-    out.say(
-        f"model against capture on {results['skin_texels']:,} skin texels (L* > 35, C*ab > 12; "
-        f"{100 * share:.1f} % of the mask): ΔE00 mean "
-        f"{colour['delta_e_mean']:.3f}, 95 % {colour['delta_e_p95']:.3f}, "
-        f"out of gamut {100 * colour['out_of_gamut']:.1f} %, ITA {colour['ita_median']:.0f}°"
-    )
-    told = list(lines(results["maps"], results.get("low_confidence")))
-    for line in told:
+def say_one(report: "Report", face: Path, maps: Path) -> None:
+    """Prints what was found in one capture; `face` and `maps` are its files."""
+    for line in summary.before(report):
         out.say(line)
-    if not told:
-        out.say(
-            "On skin colours RGB fixes melanin and blood well, thickness less, and says little of "
-            "eumelanin and oxygenation."
-        )
-    if share < 0.2:
-        out.say("That is a small part of the mask: darker texels are not in these numbers.")
-    if colour["out_of_gamut"] > 0.05 and not white:
-        out.say("Many texels are out of gamut: try --white auto, or a tighter --mask.")
+    print_statistics(summary.rows(report))
+    for line in summary.after(report, str(face), str(maps)):
+        out.say(line)

@@ -24,6 +24,7 @@ def info(maps: Annotated[Path, typer.Argument(help="Maps, NAME.skin.exr.")]) -> 
     from cutis.maps.statistics import MapStatistics
     from cutis.maps.trust import TrustStatistics
     from cutis.optics import parameter
+    from cutis.report.gathering import known_map
     from cutis.report.trust_words import lines
 
     with MapsFile(maps) as file:
@@ -62,8 +63,7 @@ def info(maps: Annotated[Path, typer.Argument(help="Maps, NAME.skin.exr.")]) -> 
         span = f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"
         out.say(f"{name}: {span} {unit}".rstrip())
     told = {
-        name: {"unit": parameter(name).unit, "median": percentiles[name][1], **row}
-        for name, row in known.items()
+        name: known_map(parameter(name).unit, percentiles[name], row) for name, row in known.items()
     }
     for line in lines(told, trust.low_confidence()):
         out.say(line)

@@ -26,7 +26,7 @@ from cutis.maps.skin_maps import Estimate
 from cutis.maps.source import source_note
 from cutis.maps.writing import maps_writer
 from cutis.optics import NAMES
-from cutis.report import Regions, Report
+from cutis.report import Regions, Report, RunningReport
 from cutis.report.page import write_report
 from cutis.report.previews import Previews
 from cutis.textures import (
@@ -59,7 +59,7 @@ class Estimated:
     """
 
     face: Path
-    report: dict[str, Any] | None = None
+    report: Report | None = None
     failure: str | None = None
     there: bool = False
     changed: tuple[str, ...] = ()
@@ -216,24 +216,26 @@ class EstimateJob:
             if not opened.seen:
                 raise opened.empty()
         texture = opened.texture
-        results = {**run.report.finish(), "colorspace": f"{texture.space.name} ({texture.origin})"}
         notes = [*texture.notes, *([] if opened.mask is None else opened.mask.notes)]
-        if regions is not None:
-            results["regions"] = regions.finish()
-            notes += regions.notes
-        results["notes"] = notes
+        numbers = () if regions is None else regions.finish()
+        report = replace(
+            run.report.finish(),
+            colorspace=f"{texture.space.name} ({texture.origin})",
+            regions=numbers,
+            notes=(*notes, *([] if regions is None else regions.notes)),
+        )
         total = opened.shape[0] * opened.shape[1]
         progress(total, total, "drawing previews")
         files = [f"{stem.name}.skin.exr", f"{stem.name}.model.exr"]
         files += [path.name for path in run.previews.write(stem)]
         pictures = run.previews.pictures()
         if self.page:
-            write_report(Path(f"{stem}.report.html"), results, pictures, capture.face.name)
+            write_report(Path(f"{stem}.report.html"), report, pictures, capture.face.name)
             files.append(f"{stem.name}.report.html")
-        results |= {FILES: files, MADE_FROM: made_from(asked)}
+        results = {**report.as_dict(), FILES: files, MADE_FROM: made_from(asked)}
         with replacing(self.report_file(capture)) as path:
             path.write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
-        return Estimated(capture.face, results, pictures=pictures)
+        return Estimated(capture.face, report, pictures=pictures)
 
 
 ENDS = (
@@ -259,7 +261,7 @@ class _Run:
         header: dict[str, Any] = {"colorspace": "lin_rec709" if space == LINEAR else space.name}
         if space.chromaticities is not None and not space.encoded:
             header["chromaticities"] = space.chromaticities
-        self.report = Report(job.model, known.calibration, opened.shape)
+        self.report = RunningReport(job.model, known.calibration, opened.shape)
         self.previews = Previews(known.calibration, opened.shape)
         self._notes = source_note(opened.texture)
         self._put_maps: Any = None

@@ -15,6 +15,7 @@ from typing import Any
 
 from cutis.errors import CutisError
 from cutis.jobs.job import Told, code_digest
+from cutis.report import Report
 
 MADE_FROM = "made_from"
 FILES = "files"
@@ -30,7 +31,7 @@ class Found:
     `complete` is False, a file is missing, or nothing is there.
     """
 
-    report: dict[str, Any] | None = None
+    report: Report | None = None
     complete: bool = False
     asked: tuple[str, ...] = ()
     content: tuple[str, ...] = ()
@@ -60,9 +61,10 @@ def look(report: Path, wanted: Mapping[str, Told]) -> Found:
         asked, content = dict(mark["asked"]), dict(mark["content"])
         files = [report.parent / str(name) for name in stored[FILES]]
         complete = all(file.is_file() for file in files)
+        known = Report.from_dict({k: v for k, v in stored.items() if k not in (MADE_FROM, FILES)})
     except FileNotFoundError:
         return Found()
-    except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError):
+    except (CutisError, OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError):
         # of an earlier version, or not of ours: how it was made nobody knows
         return Found(None, report.is_file(), asked=("what it was made with",))
     now = made_from(wanted)
@@ -77,7 +79,7 @@ def look(report: Path, wanted: Mapping[str, Told]) -> Found:
         for name, value in now["content"].items()
         if name not in others and content.get(name) != value
     ]
-    return Found(stored, complete, tuple(others), tuple(changed))
+    return Found(known, complete, tuple(others), tuple(changed))
 
 
 @contextlib.contextmanager

@@ -6,7 +6,6 @@ one by one, wherever the runner does its work.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from cutis.errors import CutisError
 from cutis.jobs.estimate import Asked, CaptureFiles, Estimated, EstimateJob
@@ -14,6 +13,7 @@ from cutis.jobs.results import look
 from cutis.jobs.runners import Runner, in_one_line
 from cutis.maps import Surveyed
 from cutis.maps.estimating import Progress
+from cutis.report import Report
 
 FLAGS = {
     "light": "--illuminant", "page": "--report", "sigma": "--no-sigma",
@@ -89,7 +89,7 @@ def _survey(opened: _Open, progress: Progress) -> Surveyed:
     return opened.job.survey(progress)
 
 
-def _estimate(item: tuple[_Open, CaptureFiles, Surveyed], progress: Progress) -> dict[str, Any]:
+def _estimate(item: tuple[_Open, CaptureFiles, Surveyed], progress: Progress) -> Report:
     """The report of a capture; its files are those that were meant, wherever this runs."""
     opened, capture, known = item
     job, asked = opened.job, opened.todo[capture]
@@ -104,7 +104,7 @@ def _estimate(item: tuple[_Open, CaptureFiles, Surveyed], progress: Progress) ->
     return done.report
 
 
-def _arrived(opened: _Open, capture: CaptureFiles, report: dict[str, Any]) -> Estimated:
+def _arrived(opened: _Open, capture: CaptureFiles, report: Report) -> Estimated:
     """The outcome of a capture, looked for where it was to be."""
     found = look(opened.job.report_file(capture), opened.todo[capture])
     if not found.same:

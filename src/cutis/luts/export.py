@@ -30,11 +30,14 @@ def export_lut(
     """Writes the LUT of edits for albedos stored in `space`; returns its title.
 
     `size` is the number of nodes along a side; `calibration` that of the captures it will be used
-    on. Raises CutisError for other extensions, sizes out of range, edits that depend on the place.
+    on. Raises CutisError for other extensions, sizes out of range, edits that depend on the place,
+    and calibrations under which colours are no numbers.
     """
     kind = Path(path).suffix.lower()
     if kind not in lut_files.FORMATS:
         raise CutisError(f"{path}: a LUT is written as .cube or .clf; end its name so")
+    if calibration is not None:
+        _check(calibration)
     edit = recolouring(edits, model, calibration, amount)
     text = f"{title(edits, amount)}, for {space.name}"
     if kind == ".cube":
@@ -56,3 +59,15 @@ def export_lut(
         operators = [lut_files.srgb_curve(), *operators, lut_files.srgb_curve(inverse=True)]
     lut_files.write_clf(path, operators, text)
     return text
+
+
+def _check(calibration: Calibration) -> None:
+    """Colours of 0 to 1 must be numbers under a calibration, and come back from it."""
+    colours = np.concatenate([np.eye(3), 1 - np.eye(3)]).astype(np.float32)
+    with np.errstate(all="ignore"):
+        applied = calibration.apply(colours)
+        lut_files.finite(applied)
+        try:
+            lut_files.finite(calibration.undo(applied))
+        except np.linalg.LinAlgError:
+            lut_files.finite(np.array([np.nan]))

@@ -2,7 +2,6 @@
 
 import os
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -10,6 +9,7 @@ from cutis.colour import delta_e, ita
 from cutis.errors import CutisError
 from cutis.maps.skin_maps import SkinMaps
 from cutis.maps.statistics import Histogram, MapStatistics
+from cutis.report.numbers import Percentiles, RegionNumbers
 from cutis.textures import Frame, LabelFile, Orientation
 from cutis.textures.closing import Closing
 
@@ -66,8 +66,8 @@ class Regions(Closing):
             differences.add(errors[here])
             typology.add(angles[here])
 
-    def finish(self) -> list[dict[str, Any]]:
-        """For each region its colour as #rrggbb, texels, ITA°, ΔE00 of the model, and maps."""
+    def finish(self) -> tuple[RegionNumbers, ...]:
+        """The regions, named by their colour as #rrggbb."""
         counts = {label: found[1].count for label, found in self._found.items()}
         crumbs = [n for label, n in counts.items() if n < CRUMB * sum(counts.values())]
         if crumbs:
@@ -75,16 +75,13 @@ class Regions(Closing):
                 f"{len(crumbs)} of {len(counts)} regions have less than {100 * CRUMB:g} % of the "
                 "texels: edges that were smoothed? paint flat colours"
             )
-        return [
-            {
-                "name": f"#{label:06x}",
-                "texels": differences.count,
-                "ita_median": typology.percentile(0.5),
-                "delta_e_mean": differences.mean(),
-                "maps": {
-                    name: dict(zip(("p5", "median", "p95"), values, strict=True))
-                    for name, values in maps.percentiles().items()
-                },
-            }
+        return tuple(
+            RegionNumbers(
+                name=f"#{label:06x}",
+                texels=differences.count,
+                ita_median=typology.percentile(0.5),
+                delta_e_mean=differences.mean(),
+                maps={name: Percentiles(*values) for name, values in maps.percentiles().items()},
+            )
             for label, (maps, differences, typology) in sorted(self._found.items())
-        ]
+        )

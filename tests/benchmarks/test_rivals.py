@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cutis.apps.rivals import TILE, onnx_step, random_networks, tiled, torch_step
+from benchmarks.rivals import TILE, onnx_step, random_networks, tiled, torch_step
 
 NETWORKS = random_networks()
 RGB = np.random.default_rng(0).random((500, 3), dtype=np.float32)

@@ -9,13 +9,13 @@ from cutis.albedo import albedo_space
 from cutis.albedo.sampled import SampledSpace
 from cutis.inverse.fit import logistic
 from cutis.inverse.prior import SkinPrior
-from cutis.inverse.prior_training import (
+from cutis.optics import MEASURED2026, from_coordinates, to_coordinates
+from studies.prior_training import (
     MeasuredSkins,
     even_weights,
     regression_quantiles,
     train_prior,
 )
-from cutis.optics import MEASURED2026, from_coordinates, to_coordinates
 
 LAM = np.arange(400.0, 701.0, 10.0)
 RHO = 0.028
