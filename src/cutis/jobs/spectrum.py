@@ -31,6 +31,7 @@ from cutis.spectra import text_cell
 from cutis.spectra.sheets import read_text
 from cutis.spectra.sheets import rows as rows_of
 from cutis.textures import replacing, sweep
+from cutis.textures.problem import shorten
 
 
 @dataclass(frozen=True)
@@ -111,7 +112,8 @@ def read_skins(
     known = [i for i, name in enumerate(columns) if name in names]
     for name in set(columns) - set(names):
         if close := difflib.get_close_matches(name.lower(), names, 1, 0.8):
-            raise CutisError(f"{path.name}: column {name!r} is not a parameter; is it {close[0]}?")
+            said = f"column '{shorten(name)}' is not a parameter; is it {close[0]}?"
+            raise CutisError(f"{path.name}: {said}")
     if not known or not table:
         raise CutisError(
             f"{path.name}: needs a header with some of {', '.join(NAMES)} and a row per skin"
@@ -124,7 +126,7 @@ def read_skins(
                 raise CutisError(f"{len(cells)} cells under {len(columns)} columns")
             parameters[number - 1] = skin({columns[i]: float(cells[i]) for i in known}, order)
         except ValueError as error:
-            raise CutisError(f"{path.name}, skin {number}: {error}") from None
+            raise CutisError(f"{path.name}, skin {number}: {shorten(str(error))}") from None
     return columns, table, parameters
 
 
