@@ -14,6 +14,7 @@ import argparse
 import json
 import queue
 import shutil
+import subprocess
 import sys
 import tempfile
 import threading
@@ -35,6 +36,11 @@ COMMANDED = 50
 PICTURES = (".png", ".jpg", ".tif", ".tx", ".exr", ".dpx", ".psd")
 LOOKUPS = (".ocio", ".cube", ".spi1d", ".spi3d", ".clf", ".csp")
 PAIRED = (".hdr", ".img", ".sli", ".npy", *LOOKUPS)
+
+
+WARM = "import sys, tempfile; from cutis.apps.main import main; "
+WARM += "sys.argv[1:] = ['estimate', sys.argv[1], '-q', '-o', tempfile.mkdtemp()]; main()"
+"""Compiles what commands need before anything is timed."""
 
 
 class Run:
@@ -142,6 +148,8 @@ def main() -> int:
     parser.add_argument("--findings", type=Path, default=Path("fuzz-findings"))
     args = parser.parse_args()
     run, start = Run(args.findings), time.monotonic()
+    first = ROOT / "src" / "cutis" / "data" / "heads" / "leeperrysmith_color.jpg"
+    subprocess.run([sys.executable, "-c", WARM, str(first)], check=True, capture_output=True)
     with tempfile.TemporaryDirectory() as name:
         whole = [
             path
