@@ -29,7 +29,14 @@ from cutis.optics import NAMES
 from cutis.report import Regions, Report, RunningReport
 from cutis.report.page import write_report
 from cutis.report.previews import Previews
-from cutis.textures import MaskFile, TextureFile, channel_writer, replacing, sweep
+from cutis.textures import (
+    MaskFile,
+    Orientation,
+    TextureFile,
+    channel_writer,
+    replacing,
+    sweep,
+)
 
 Asked = dict[str, Told]
 
@@ -68,7 +75,8 @@ class EstimateJob:
     that of the capture, `colorspace` that of its texels, None for what the file says;
     `output_colorspace` is that of NAME.model.exr, None for linear sRGB. `half` stores maps in half
     the size, `sigma` adds standard deviations and confidence where the model knows them, `page`
-    adds NAME.report.html. `again` makes anew what is there, also what was made otherwise.
+    adds NAME.report.html. `orientation` "ignore" keeps pictures in the order they are stored in,
+    whatever their tag says. `again` makes anew what is there, also what was made otherwise.
     """
 
     captures: tuple[CaptureFiles, ...]
@@ -82,6 +90,7 @@ class EstimateJob:
     half: bool = False
     sigma: bool = True
     page: bool = False
+    orientation: Orientation = "auto"
     again: bool = field(default=False, metadata={"result": False})
 
     def __post_init__(self) -> None:
@@ -175,8 +184,12 @@ class EstimateJob:
     def _opened(self, capture: CaptureFiles) -> Iterator[FileCapture]:
         """A capture and its mask, open."""
         with contextlib.ExitStack() as stack:
-            texture = stack.enter_context(TextureFile(capture.face, self.colorspace or "auto"))
-            mask = None if capture.mask is None else MaskFile(capture.mask, texture.shape)
+            texture = stack.enter_context(
+                TextureFile(capture.face, self.colorspace or "auto", None, self.orientation)
+            )
+            mask = None
+            if capture.mask is not None:
+                mask = MaskFile(capture.mask, texture.frame, self.orientation)
             yield FileCapture(texture, None if mask is None else stack.enter_context(mask))
 
     def outputs(self, capture: CaptureFiles) -> list[Path]:
@@ -193,15 +206,19 @@ class EstimateJob:
             run = _Run(self, known, opened, stem, stack)
             regions = None
             if capture.regions is not None:
-                regions = Regions(capture.regions, opened.shape)
+                frame = opened.texture.frame
+                regions = stack.enter_context(Regions(capture.regions, frame, self.orientation))
             run.through(regions, progress)
             if not opened.seen:
                 raise opened.empty()
         texture = opened.texture
+        notes = [*texture.notes, *([] if opened.mask is None else opened.mask.notes)]
+        numbers = () if regions is None else regions.finish()
         report = replace(
             run.report.finish(),
             colorspace=f"{texture.space.name} ({texture.origin})",
-            regions=() if regions is None else regions.finish(),
+            regions=numbers,
+            notes=(*notes, *([] if regions is None else regions.notes)),
         )
         total = opened.shape[0] * opened.shape[1]
         progress(total, total, "drawing previews")
@@ -245,7 +262,9 @@ class _Run:
         self._notes = source_note(opened.texture)
         self._put_maps: Any = None
         self._put_model = stack.enter_context(
-            channel_writer(f"{stem}.model.exr", "RGB", opened.shape, kind, header)
+            channel_writer(
+                f"{stem}.model.exr", "RGB", opened.shape, kind, header, frame=opened.texture.frame
+            )
         )
         self._open_maps = lambda first: stack.enter_context(
             maps_writer(f"{stem}.skin.exr", self._header(first), opened.shape, kind)
