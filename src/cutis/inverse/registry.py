@@ -110,7 +110,7 @@ def _entry_points() -> tuple[tuple[str, object], ...]:
 
 
 def _brought(point: object) -> Model:
-    return point.load()  # type: ignore[attr-defined,no-any-return]
+    return point.load()  # type: ignore[attr-defined]
 
 
 def _package(point: object) -> str:

@@ -7,7 +7,7 @@ first. Each goes through in bands of rows, so that memory does not grow with the
 import contextlib
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
@@ -251,7 +251,7 @@ class _Run:
         self._put_model = stack.enter_context(
             channel_writer(f"{stem}.model.exr", "RGB", opened.shape, kind, header)
         )
-        self._open_maps = lambda first: stack.enter_context(
+        self._open_maps: Callable[[Estimate], Any] = lambda first: stack.enter_context(
             maps_writer(f"{stem}.skin.exr", self._header(first), opened.shape, kind)
         )
 
