@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cutis.arrays import Colours, Coordinates, Floats, Picture, Where
 from cutis.colour.difference import LIGHTEST_HAIR, PALEST, to_relative_xyz
 from cutis.errors import CutisError
 from cutis.inverse.calibration import Calibration
@@ -135,8 +136,8 @@ def report(skin: SkinMaps) -> dict[str, Any]:
 
 
 def judged(
-    truth: NDArray[np.float32], model: NDArray[np.float32]
-) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_]]:
+    truth: Colours, model: Colours
+) -> tuple[NDArray[np.float32], NDArray[np.float32], Where]:
     """CIEDE2000 and ITA (n,) of colours (n, 3), where the third says that they are skin's."""
     from cutis.maps.statistics_kernel import judge
 
@@ -152,12 +153,10 @@ class Smoothness:
 
     def __init__(self) -> None:
         self._maps, self._colour = np.zeros(5), np.zeros(3)
-        self._last: tuple[NDArray[np.bool_], NDArray[np.floating], NDArray[np.floating]] | None
+        self._last: tuple[Where, Floats, Floats] | None
         self._last = None
 
-    def add(
-        self, u: NDArray[np.float32], source: NDArray[np.float32], where: NDArray[np.bool_]
-    ) -> None:
+    def add(self, u: Coordinates, source: Picture, where: Where) -> None:
         """The next rows: coordinates (h, W, 5), capture (h, W, 3), texels (h, W) that count."""
         from cutis.maps.statistics_kernel import differences
 
