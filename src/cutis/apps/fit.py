@@ -58,6 +58,9 @@ def fit(
     correlations: Annotated[
         bool, typer.Option("--correlations", help="Columns of correlations between parameters.")
     ] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Keep the result also where it looks like no skin.")
+    ] = False,
     quiet: options.Quiet = False,
 ) -> None:
     """Parameters of skin from measured reflectance spectra, each with its standard deviation.
@@ -73,7 +76,7 @@ def fit(
     low, high = options.wavelength_range(wavelength_range)
     job = FitJob(
         spectra, output, options.tissue_of(tissue), specular, shift, low, high, wavelengths, scale,
-        noise, values, tuple(free or ()), correlations,
+        noise, values, tuple(free or ()), correlations, force,
     )  # fmt: skip
     with bar(quiet) as progress:
         found = job.run(progress)

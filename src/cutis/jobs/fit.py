@@ -12,20 +12,19 @@ from numpy.typing import NDArray
 
 from cutis.errors import CutisError
 from cutis.inverse import SpectralFit, SpectralFitter
+from cutis.jobs.doubts import Doubts
 from cutis.jobs.files import check_outputs
 from cutis.jobs.job import digest_of
 from cutis.maps.defaults import OLD_DEFAULT, default_tissue
 from cutis.maps.estimating import Progress, nobody
 from cutis.optics import ALIAGA2022, WAVELENGTHS, Parameter, Tissue
-from cutis.spectra import open_cube
+from cutis.spectra import is_table, open_cube, open_table, text_cell
 from cutis.spectra.reflectance import HIGHEST, fraction_scale, without_impossible
-from cutis.spectra.table_files import read_spectra
 from cutis.textures import channel_writer, replacing, sweep
 from cutis.textures.problem import problem
 
 STEP = 2000
 """Spectra of a table between two looks at the progress bar."""
-TABLES = (".csv", ".tsv", ".txt")
 
 
 @dataclass(frozen=True)
@@ -43,8 +42,8 @@ class FitJob:
 
     `output` is a .csv for a table, None to get its text back, and NAME.skin.exr for a cube. `low`
     to `high` are the wavelengths to fit, nm; `wavelengths` a list of those of a cube; `scale` the
-    stored value that means a reflectance of 1. `correlations` adds columns to a table. The others
-    are those of `inverse.fit_spectra`.
+    stored value that means a reflectance of 1. `correlations` adds columns to a table. `force`
+    keeps what looks like no skin. The others are those of `inverse.fit_spectra`.
     """
 
     spectra: Path
@@ -60,6 +59,7 @@ class FitJob:
     held: Mapping[str, float] = field(default_factory=dict)
     free: tuple[str, ...] = ()
     correlations: bool = False
+    force: bool = field(default=False, metadata={"result": False})
 
     def __post_init__(self) -> None:
         if not 0 < self.low < self.high:
@@ -75,7 +75,7 @@ class FitJob:
     @property
     def is_table(self) -> bool:
         """Whether the spectra are a table; else they are a cube."""
-        return self.spectra.suffix.lower() in TABLES
+        return is_table(self.spectra)
 
     def digest(self) -> str:
         """SHA-256 of all that the result depends on."""
@@ -126,15 +126,24 @@ class _Run:
         except CutisError as error:
             raise problem(job.spectra, str(error)) from error
 
+    def doubted(self, doubts: Doubts, share: float) -> None:
+        """Refuses fits of which more than `share` look like no skin, unless they are wanted."""
+        if not doubts.more_than(share):
+            return
+        if not self.job.force:
+            remedy = "give reflectance, not absorbance or K/S, or keep the result by --force"
+            raise problem(self.job.spectra, f"{doubts.words()}; {remedy}")
+        self.notes.append(doubts.words())
+
     def table(self) -> Fitted:
         """A CSV of spectra → a CSV of skins, one row each, in their order."""
         request, path, output = self.job, self.job.spectra, self.job.output
-        table = read_spectra(path)
+        table = open_table(path)
         for note in table.notes:
             self.notes.append(note)
         inside = self.chosen(table.wavelengths)
         stored = table.values[:, inside]
-        fraction, notes = fraction_scale(path, stored, request.scale)
+        fraction, notes = table.scale(inside, request.scale)
         values, low, high = without_impossible(stored * fraction)
         for note in [*notes, *_left_out(low, high)]:
             self.notes.append(note)
@@ -156,6 +165,9 @@ class _Run:
             self.progress(start, len(values), "fitting")
             parts.append(fitter.fit(values[start : start + STEP]))
         found = _joined(parts)
+        doubts = Doubts(request.held)
+        doubts.add(found)
+        self.doubted(doubts, 0.5)
         if (used == free).any() and request.noise is None:
             self.notes.append("as many wavelengths as parameters: σ is for a noise of 0.005")
         text = io.StringIO()
@@ -164,7 +176,7 @@ class _Run:
         pairs = list(combinations(range(len(names)), 2)) if request.correlations else []
         sigma = found.sigma
         header = [
-            *table.columns,
+            *map(text_cell, table.columns),
             *names,
             *(f"{name}_sigma" for name in names),
             "rmse",
@@ -176,7 +188,7 @@ class _Run:
             scaled = np.maximum(sigma[row], 1e-30)
             extra = [found.covariance[row, i, j] / (scaled[i] * scaled[j]) for i, j in pairs]
             cells = [*(f"{v:.6g}" for v in numbers), str(used[row]), *(f"{v:.4f}" for v in extra)]
-            writer.writerow([*labels, *cells])
+            writer.writerow([*map(text_cell, labels), *cells])
         if output is not None:
             with replacing(output) as partial:
                 partial.write_text(text.getvalue(), encoding="utf-8")
@@ -212,6 +224,7 @@ class _Run:
             header["cutis:spectra"] = cube.path.name
             header["cutis:specular"] = f"{request.specular:g}"
             header["cutis:shift"] = f"{request.shift:g}"
+            doubts = Doubts(request.held)
             low = high = dropped = done = 0
             total, spread = 0, 0.0
             with (
@@ -226,6 +239,7 @@ class _Run:
                     good = np.isfinite(values).sum(axis=1) >= fitter.free.sum()
                     good &= np.nan_to_num(values).max(axis=1) > 0
                     found = fitter.fit(values[good])
+                    doubts.add(found)
                     dropped += int((~good).sum())
                     total, spread = total + int(good.sum()), spread + float(found.rmse.sum())
                     write(_maps(found, good, shape))
@@ -233,6 +247,7 @@ class _Run:
                 if not total:
                     what = f"no texel has {fitter.free.sum()} usable values; nothing to fit"
                     raise problem(cube.path, what)
+                self.doubted(doubts, 0.9)  # there may be more wall than skin
         for note in _left_out(low, high):
             self.notes.append(note)
         if dropped:

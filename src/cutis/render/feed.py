@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from cutis.colour import LINEAR
 from cutis.maps import Change
 from cutis.render.skin import Rows, Skin
-from cutis.textures import Texture, bands, texture_writer
+from cutis.textures import Frame, Texture, bands, texture_writer
 
 LONGEST = 4096
 """Texels along the longer side; a 16k texture as Blender holds it would take 4 GB."""
@@ -21,6 +21,11 @@ class _Reduced:
     """The texture to be, of `shape`."""
 
     shape: tuple[int, int]
+
+    @property
+    def frame(self) -> Frame:
+        """All of its picture."""
+        return Frame(self.shape, self.shape)
 
     def rows(self, rows: slice) -> Texture:
         count = len(range(*rows.indices(self.shape[0])))

@@ -19,6 +19,8 @@ from cutis.colour.spaces import (
     chromaticities_of,
 )
 from cutis.errors import CutisError
+from cutis.textures.ocio_files import check_config_file, check_lookups
+from cutis.textures.problem import shorten
 
 BUILT_IN = "ocio://studio-config-v2.2.0_aces-v1.3_ocio-v2.4"
 """The configuration when none is given, by its full name: `default` changes with releases."""
@@ -121,12 +123,13 @@ def ocio_space(name: str, config: str | None = None) -> Space | None:
     if space.isData():
         raise CutisError(f"{space.getName()} holds data, not colour; name a colour space")
     connection, here = _connection(known, config or BUILT_IN)
+    check_lookups(known, config or BUILT_IN, (space.getName(), here))
     lossless = ocio.OPTIMIZATION_LOSSLESS
     try:
         to = known.getProcessor(space.getName(), here).getOptimizedCPUProcessor(lossless)
         back = known.getProcessor(here, space.getName()).getOptimizedCPUProcessor(lossless)
     except (ocio.Exception, ocio.ExceptionMissingFile) as error:
-        reason = str(error).splitlines()[0]
+        reason = shorten(str(error).splitlines()[0])
         raise CutisError(f"{name}: OpenColorIO cannot convert it both ways ({reason})") from error
     found = OcioSpace(space.getName(), True, to, back, connection, config)
     return _ours(found) or _described(found)
@@ -189,7 +192,8 @@ def _config(path: str) -> Any:
     import PyOpenColorIO as ocio
 
     try:
+        check_config_file(path)
         return ocio.Config.CreateFromFile(path)
-    except (ocio.Exception, ocio.ExceptionMissingFile, UnicodeError) as error:
-        text = str(error).splitlines()[0]
+    except (ocio.Exception, ocio.ExceptionMissingFile, CutisError, UnicodeError) as error:
+        text = shorten(str(error).removeprefix(f"{path}: ").splitlines()[0])
         raise CutisError(f"{path}: not a usable OpenColorIO configuration ({text})") from error
