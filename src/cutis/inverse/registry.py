@@ -5,6 +5,7 @@ that of the model, and what it points to a `Model`, or a function without argume
 Nothing of theirs is imported before it is asked for by name.
 """
 
+import copyreg
 import dataclasses
 from collections.abc import Callable
 from functools import cache
@@ -74,6 +75,19 @@ def reopened(name: str, recipe: str, device: str, digest: str) -> Model:
             "the same version of cutis and of its models"
         )
     return model
+
+
+def _as_recipe(model: Model) -> tuple[Callable[..., Model], tuple[str, str, str, str]]:
+    """A model travels as its recipe; what arrives is checked to be the same."""
+    if model.recipe is None:
+        raise CutisError(
+            f"the model {model.name} lives in this process alone; register it under the entry "
+            "point group cutis.models to use it in others"
+        )
+    return reopened, (model.name, *model.recipe, model.digest)
+
+
+copyreg.pickle(Model, _as_recipe)
 
 
 @cache
