@@ -1,5 +1,8 @@
 """Image files: textures as stored, masks and named channels, read and written without surprises."""
 
+from typing import Any
+
+from cutis.moved import moved
 from cutis.textures.atomic import check_outputs, replacing, sweep
 from cutis.textures.channels import ChannelFile, channel_writer, read_channels, write_channels
 from cutis.textures.frame import Frame
@@ -31,3 +34,14 @@ __all__ = [
     "write_channels",
     "write_texture",
 ]
+
+_MOVED = {
+    "SpectralCube": "cutis.spectra:SpectralCube",
+    "open_cube": "cutis.spectra:open_cube",
+    "write_clf": "cutis.luts:write_clf",
+    "write_cube": "cutis.luts:write_cube",
+}
+
+
+def __getattr__(name: str) -> Any:
+    return moved(__name__, name, _MOVED)
