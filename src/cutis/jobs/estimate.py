@@ -30,6 +30,7 @@ from cutis.report import Regions, Report, RunningReport
 from cutis.report.page import write_report
 from cutis.report.previews import Previews
 from cutis.textures import MaskFile, TextureFile, channel_writer, replacing, sweep
+from cutis.textures.udim import tile_numbers
 
 Asked = dict[str, Told]
 
@@ -260,6 +261,7 @@ class _Run:
         return Header(
             model.name, model.digest, known.calibration, self._notes, known.state,
             sigmas=tuple(first.sigmas), confident=first.confidence is not None,
+            tiles=tile_numbers([one.face for one in self._job.captures]),
         )  # fmt: skip
 
     def through(self, regions: Regions | None, progress: Progress) -> None:
