@@ -303,8 +303,8 @@ def _one_line():
 
 
 @pytest.fixture
-def scheduler(tmp_path):
-    """Address of a Dask scheduler of its own."""
+def scheduler_process(tmp_path):
+    """A Dask scheduler of its own, as a process; its address is in scheduler.json."""
     where = tmp_path / "scheduler.json"
     process = subprocess.Popen(
         [sys.executable, "-m", "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port",
@@ -316,10 +316,16 @@ def scheduler(tmp_path):
         while not (where.is_file() and where.stat().st_size > 0):
             assert time.monotonic() < end, "no scheduler"
             time.sleep(0.01)
-        yield json.loads(where.read_text())["address"]
+        yield process
     finally:
         process.kill()
         process.wait()
+
+
+@pytest.fixture
+def scheduler(scheduler_process, tmp_path) -> str:
+    """Address of a Dask scheduler of its own."""
+    return str(json.loads((tmp_path / "scheduler.json").read_text())["address"])
 
 
 @pytest.fixture

@@ -74,6 +74,8 @@ def edit(
     if save_look is not None:
         write_look(look, save_look, amount, mask, job)
     for one in () if quiet else found:
+        for note in one.notes:
+            out.say(note)
         for text, clamped in zip(one.edits, one.clamped, strict=True):
             share = f" ({100 * clamped / max(one.inside, 1):.0f} % of the mask)"
             out.say(text + (f", {clamped:,} texels clamped to range{share}" if clamped else ""))

@@ -28,7 +28,7 @@ from cutis.maps import (
 from cutis.maps.estimating import Progress, nobody
 from cutis.maps.face import Memo
 from cutis.maps.skin_maps import Recolouring
-from cutis.maps.source import source_note
+from cutis.maps.source import orientation_of, source_note
 from cutis.optics import RARE_NAMES
 from cutis.textures import TextureFile, format_of, sweep, texture_writer
 from cutis.textures.udim import TOKEN, tile_of, udim_tiles
@@ -43,6 +43,8 @@ class Edited:
     clamped: tuple[int, ...]
     inside: int
     changed: int
+    notes: tuple[str, ...] = ()
+    """What was chosen or not believed in the capture and the mask."""
 
 
 @dataclass(frozen=True)
@@ -116,6 +118,8 @@ class EditJob:
             changes = bound([wanted], Face(maps, memo=memo))
             model = self.model or maps.made_by.load()
             done = self._albedo(stack, maps, texture, changes, model, progress)
+            said = tuple(note for change in changes for note in change.notes)
+            done = replace(done, notes=(*texture.notes, *said))
             if self.save_maps is not None:
                 looks = (*maps.header.looks, *wanted.documents)
                 self._maps(stack, maps, texture, changes, looks, done, model, progress)

@@ -21,7 +21,7 @@ from cutis.jobs.job import digest_of, tell, told
 from cutis.looks import asked, nothing
 from cutis.maps import Change, Edits, Face, bound
 from cutis.maps.estimating import Progress, nobody
-from cutis.maps.source import digest
+from cutis.maps.source import digest, orientation_of
 from cutis.render.blender import Blender, find_blender
 from cutis.render.cycles import INDEX, METHOD, base_colour, facing
 from cutis.render.cycles import radius as cycles_radius
@@ -36,7 +36,7 @@ from cutis.render.material_export import export_material
 from cutis.render.medium import mean_free_path, of_maps
 from cutis.render.scene import Scene
 from cutis.render.skin import MAPS, Rows, Skin
-from cutis.textures import TextureFile, format_of, read_texture, sweep
+from cutis.textures import Orientation, TextureFile, format_of, read_texture, sweep
 
 METRE = 1000.0
 """Millimetres per scene unit of an exported material, unless the scene says otherwise."""
@@ -52,6 +52,7 @@ class Subject:
     (0–1) of them, inside the painted `mask`. `source` is the capture of maps where it is not where
     they say, `model_only` leaves it out. `colorspace` is that of a texture, None for what it says.
     `radius` is one of `RADII`. `head` is the bundled head that the scene shows, if it is one.
+    `orientation` "ignore" keeps a texture in the order it is stored in.
     """
 
     skin: Path
@@ -64,6 +65,7 @@ class Subject:
     colorspace: Space | None = None
     radius: str = "tissue"
     head: Head | None = None
+    orientation: Orientation = "auto"
 
     def __post_init__(self) -> None:
         if self.radius not in RADII:
@@ -75,7 +77,10 @@ class Subject:
         """The skin, open, and the changes that the edits are."""
         with contextlib.ExitStack() as stack:
             space = self.colorspace or "auto"
-            skin = Skin(self.skin, source=self.source, model_only=self.model_only, colorspace=space)
+            skin = Skin(
+                self.skin, source=self.source, model_only=self.model_only, colorspace=space,
+                orientation=self.orientation,
+            )  # fmt: skip
             stack.enter_context(skin)
             if self.head is not None:
                 _check_fit(skin, self.head)
@@ -110,6 +115,7 @@ class Rendered:
     animation: Path | None = None
     device: str = ""
     credits: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -153,6 +159,7 @@ class RenderJob:
                 names, {"the capture": None if skin.capture is None else skin.capture.path}
             )
             result.credits = credits_of(subject.scene.mesh, *skin.origins())
+            result.notes = tuple(skin.notes)
             base = _recipe(subject, skin, blender) if sequence else {}
             feeds = _Feeds(subject, skin, Path(folder))
             recipes: dict[Path, tuple[Path, str]] = {}

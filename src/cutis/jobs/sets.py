@@ -6,9 +6,11 @@ one by one, wherever the runner does its work.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from cutis.errors import CutisError
 from cutis.jobs.estimate import Asked, CaptureFiles, Estimated, EstimateJob
+from cutis.jobs.files import check_outputs
 from cutis.jobs.results import look
 from cutis.jobs.runners import Runner, in_one_line
 from cutis.maps import Surveyed
@@ -40,9 +42,17 @@ def estimate_sets(
     content behind a flag has changed they are made again; where flags have, they fail, naming
     those, unless the job says `again`.
     """
-    waiting: list[_Open] = []
+    jobs, waiting = [job.absolute() for job in jobs], list[_Open]()
+    read: dict[str, Path | None] = {}
+    for one in (one for job in jobs for one in job.captures):
+        read[f"the capture {one.face.name}"] = one.face
+        for what, path in (("mask", one.mask), ("picture of regions", one.regions)):
+            if path is not None:
+                read[f"the {what} {path.name}"] = path
     for job in jobs:
-        job = job.absolute()
+        for capture in job.captures:
+            check_outputs(job.outputs(capture), read)
+    for job in jobs:
         outcomes, opened = _sorted_out(job)
         yield from outcomes
         if opened.todo:
@@ -65,7 +75,6 @@ def _sorted_out(job: EstimateJob) -> tuple[list[Estimated], _Open]:
     outcomes, opened, shared = [], _Open(job, {}, {}), job.shared()
     for capture in job.captures:
         try:
-            job.check_names(capture)
             wanted = {**shared, **job.own(capture)}
             found = job.found(capture, wanted)
         except (CutisError, OSError) as error:

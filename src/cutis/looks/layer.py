@@ -98,6 +98,11 @@ class LayerOnFace:
         return self._mask.reach + sum(effect.reach for effect in self._effects)
 
     @property
+    def notes(self) -> tuple[str, ...]:
+        """What was made of pictures."""
+        return self._mask.notes
+
+    @property
     def trust(self) -> bool:
         """Whether it looks at σ or confidence."""
         return self._mask.trust or any(effect.trust for effect in self._effects)

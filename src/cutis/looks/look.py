@@ -303,6 +303,11 @@ class LookOnFace(Change):
         return sum(layer.reach for layer in self._layers)
 
     @property
+    def notes(self) -> tuple[str, ...]:
+        """What was made of masks."""
+        return tuple(dict.fromkeys(note for layer in self._layers for note in layer.notes))
+
+    @property
     def trust(self) -> bool:
         """Whether it looks at σ or confidence."""
         return any(layer.trust for layer in self._layers)

@@ -7,7 +7,7 @@ from nothing, any other from everything.
 
 import abc
 from pathlib import Path
-from typing import Any, ClassVar, Literal, Protocol
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
@@ -21,12 +21,18 @@ from cutis.maps import Face, Tile
 from cutis.maps.plain import Map
 
 
-class Cover(Protocol):
-    """A mask that is ready for a face: takes a tile and says how much of it counts, (h, W)."""
+class Cover(abc.ABC):
+    """A mask that is ready for a face: takes a tile and says how much of it counts, (h, W).
 
-    reach: int
-    trust: bool
+    `reach` is how many rows above and below decide what it is, `trust` whether it looks at σ or
+    confidence, `notes` what was made of its file.
+    """
 
+    reach: int = 0
+    trust: bool = False
+    notes: tuple[str, ...] = ()
+
+    @abc.abstractmethod
     def __call__(self, tile: Tile) -> Map:
         """Values in [0, 1]."""
 
@@ -69,7 +75,7 @@ class MaskPart(Part, abc.ABC):
         return False
 
 
-class Mask:
+class Mask(Cover):
     """All parts of a mask together, ready for a face."""
 
     def __init__(self, parts: tuple[MaskPart, ...], covers: tuple[Cover, ...], face: Face) -> None:
@@ -80,6 +86,7 @@ class Mask:
         )
         self.reach = max((cover.reach for cover in self._covers), default=0)
         self.trust = any(cover.trust for cover in self._covers)
+        self.notes = tuple(note for cover in covers for note in cover.notes)
 
     def __call__(self, tile: Tile) -> Map:
         """Values (h, W) in [0, 1]."""
@@ -96,7 +103,7 @@ class Mask:
         return total
 
 
-class Feathered:
+class Feathered(Cover):
     """A part with blurred edges."""
 
     def __init__(self, cover: Cover, part: MaskPart, face: Face) -> None:
@@ -152,9 +159,7 @@ class NamedPart(MaskPart):
         raise CutisError("a painted mask is not kept with the maps; give it with --mask")
 
 
-class _Painted:
-    reach, trust = 0, False
-
+class _Painted(Cover):
     def __init__(self, painted: Any) -> None:
         array = isinstance(painted, np.ndarray)
         self._window = Window(painted.__getitem__ if array else painted.rows)

@@ -2,14 +2,13 @@
 
 import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
 
-from cutis.errors import CutisError
 from cutis.looks.folder import Folder
 from cutis.looks.masks import Cover, MaskPart, NamedPart
 from cutis.looks.window import Window
@@ -50,13 +49,15 @@ class PicturePart(FilePart):
     def on_face(self, face: Face, folder: Folder) -> Cover:
         """The picture of this face; CutisError where it is missing, of another size or black."""
         path = folder.find(self.path, face.number)
-        with MaskFile(path, face.shape) as file:
+        frame, how = face.frame, face.orientation
+        with MaskFile(path, frame, how) as file:
+            notes = file.notes
             marked = TOKEN in self.path or any(
                 (file.rows(rows) > MaskFile.BLACK).any() for rows in bands(face.shape)
             )
             if not marked:
                 raise file.empty()
-        return _Picture(path, lambda: MaskFile(path, face.shape), lambda found: found)
+        return _Picture(lambda: MaskFile(path, frame, how), lambda found: found, notes)
 
 
 class GivenPart(PicturePart):
@@ -99,28 +100,27 @@ class RegionsPart(FilePart):
         """The picture of this face; CutisError where it is missing, lossy or of another size."""
         path = folder.find(self.path, face.number)
         colours = [int(self.names.get(one, one)[1:], 16) for one in self.take]
-        LabelFile(path, face.shape).close()
+        frame, how = face.frame, face.orientation
+        with LabelFile(path, frame, how) as file:
+            notes = file.notes
 
         def taken(labels: Any) -> Map:
             return np.isin(labels, colours).astype(np.float32)
 
-        return _Picture(path, lambda: LabelFile(path, face.shape), taken)
+        return _Picture(lambda: LabelFile(path, frame, how), taken, notes)
 
 
-class _Picture:
+class _Picture(Cover):
     """A picture that is opened when its rows are read, and stays open until nobody needs it."""
 
-    reach, trust = 0, False
-
-    def __init__(self, path: Path, open: Callable[[], Any], take: Callable[[Any], Map]) -> None:
-        self._path, self._open, self._take = path, open, take
-        self._file: Any = None
+    def __init__(
+        self, open: Callable[[], Any], take: Callable[[Any], Map], notes: Sequence[str]
+    ) -> None:
+        self._open, self._take, self.notes = open, take, tuple(notes)
+        self._window: Window | None = None
 
     def __call__(self, tile: Tile) -> Map:
-        at = tile.maps.whole
-        if self._file is None:
-            self._file = self._open()
-            self._window = Window(self._file.rows)
-        if self._file.shape != at.whole:
-            raise CutisError(f"{self._path}: is of another size than the maps; resize it")
-        return self._take(self._window.rows(at.first_row, at.first_row + tile.maps.shape[0]))
+        if self._window is None:
+            self._window = Window(self._open().rows)
+        first = tile.maps.whole.first_row
+        return self._take(self._window.rows(first, first + tile.maps.shape[0]))

@@ -27,9 +27,7 @@ class PatchesPart(MaskPart):
         return _Patches(tile_seed(self.seed, face))
 
 
-class _Patches:
-    reach, trust = 0, False
-
+class _Patches(Cover):
     def __init__(self, seed: int) -> None:
         self._seed = seed
 

@@ -101,7 +101,7 @@ class RangePart(MaskPart):
         return _Range(self, face, trust)
 
 
-class _Range:
+class _Range(Cover):
     def __init__(self, part: RangePart, face: Face, trust: bool) -> None:
         self._part, self.trust = part, trust
         self._divide = np.float32(1)

@@ -90,6 +90,7 @@ class Colours:
     def __init__(self, model: Model) -> None:
         """The model is also who knows σ."""
         self.made_by = MadeBy.of(model)
+        self.provenance: dict[str, str] = {}
 
     def knows(self, name: str) -> bool:
         """Whether there is a σ of a map, or "confidence"."""

@@ -1,5 +1,7 @@
 """What users hold: skin maps, edits, and the files they are kept in."""
 
+from typing import Any
+
 from cutis.maps.changes import Change, Edits, Recipe, Step, Tile, recipe
 from cutis.maps.defaults import DEFAULT, default_tissue, load_model
 from cutis.maps.edits import Edit, parse_edit
@@ -11,6 +13,7 @@ from cutis.maps.sampler import Sampler
 from cutis.maps.skin_maps import EditedEstimate, Estimate, MadeBy, SkinMaps, skin_of
 from cutis.maps.source import Capture, FileCapture, find_source, open_source, source_note
 from cutis.maps.writing import Header, maps_writer, save_maps
+from cutis.moved import moved
 
 __all__ = [
     "DEFAULT",
@@ -49,3 +52,14 @@ __all__ = [
     "source_note",
     "survey",
 ]
+
+_MOVED = {
+    "Regions": "cutis.report:Regions",
+    "report": "cutis.report:report",
+    "export_lut": "cutis.luts:export_lut",
+    "presets": "cutis.looks:presets",
+}
+
+
+def __getattr__(name: str) -> Any:
+    return moved(__name__, name, _MOVED)

@@ -82,6 +82,11 @@ class Change(Recipe):
         return 0
 
     @property
+    def notes(self) -> tuple[str, ...]:
+        """What was made of files that can be understood in several ways, in words."""
+        return ()
+
+    @property
     def trust(self) -> bool:
         """Whether it looks at σ or confidence."""
         return False

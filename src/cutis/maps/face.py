@@ -15,6 +15,9 @@ from typing import TYPE_CHECKING, Protocol
 from cutis.errors import CutisError
 from cutis.maps.changes import Change, Recipe
 from cutis.maps.statistics import MapStatistics, Quantiles
+from cutis.maps.source import orientation_of
+from cutis.textures import Frame, Orientation
+from cutis.textures.frame import noted_frame
 from cutis.textures.texture import bands
 from cutis.textures.udim import FIRST
 
@@ -51,6 +54,10 @@ class Source(Protocol):
     @property
     def known(self) -> Quantiles | None:
         """Where the values of its maps lie, as far as somebody has looked."""
+
+    @property
+    def provenance(self) -> Mapping[str, str]:
+        """Where the maps are from."""
 
     def knows(self, name: str) -> bool:
         """Whether there is a σ of a map, or "confidence"."""
@@ -98,6 +105,16 @@ class Face:
     def made_by(self) -> "MadeBy":
         """The model of the maps."""
         return self._source.made_by
+
+    @property
+    def frame(self) -> Frame:
+        """Where its texels lie on the picture that the capture is of."""
+        return noted_frame(self._source.provenance.get("window", ""), self.shape)
+
+    @property
+    def orientation(self) -> Orientation:
+        """How the capture was turned, and pictures that go with it are."""
+        return orientation_of(self._source.provenance)
 
     def knows(self, name: str) -> bool:
         """Whether there is a σ of a map, or "confidence"."""
@@ -208,6 +225,7 @@ class Held:
     def __init__(self, skin: "SkinMaps") -> None:
         self._skin = skin
         self.shape, self.tile, self.made_by = skin.shape, skin.estimate.tile, skin.made_by
+        self.provenance = skin.provenance
 
     @property
     def known(self) -> Quantiles | None:

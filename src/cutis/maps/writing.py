@@ -28,6 +28,7 @@ from cutis.maps.statistics import MapStatistics, Quantiles
 from cutis.maps.trust import CONFIDENCE, SIGMA
 from cutis.optics import NAMES, PARAMETERS, RARE
 from cutis.textures.channels import channel_writer
+from cutis.textures.frame import noted_frame
 from cutis.textures.texture import bands
 
 if TYPE_CHECKING:
@@ -126,7 +127,8 @@ def maps_writer(
     names = (*maps, *(ORIGINAL + name for name in changed), *trust)
     attributes, found = header.attributes(path), MapStatistics()
     late = {f"{PREFIX}quantiles": lambda: found.quantiles().text()}
-    with channel_writer(path, names, shape, dtype, attributes, half=trust, late=late) as put:
+    frame = noted_frame(header.provenance.get("window", ""), shape)
+    with channel_writer(path, names, shape, dtype, attributes, trust, frame, late) as put:
 
         def write(part: "SkinMaps") -> None:
             found.add(part.coordinates(), part.mask > 0)

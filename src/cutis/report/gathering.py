@@ -138,7 +138,7 @@ def judged(
     truth: NDArray[np.float32], model: NDArray[np.float32]
 ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_]]:
     """CIEDE2000 and ITA (n,) of colours (n, 3), where the third says that they are skin's."""
-    from cutis.maps.statistics_kernel import judge
+    from cutis.kernels.statistics_kernel import judge
 
     errors, angles = np.zeros(len(truth), np.float32), np.zeros(len(truth), np.float32)
     skin = np.zeros(len(truth), np.bool_)
@@ -159,7 +159,7 @@ class Smoothness:
         self, u: NDArray[np.float32], source: NDArray[np.float32], where: NDArray[np.bool_]
     ) -> None:
         """The next rows: coordinates (h, W, 5), capture (h, W, 3), texels (h, W) that count."""
-        from cutis.maps.statistics_kernel import differences
+        from cutis.kernels.statistics_kernel import differences
 
         for values, total in ((u, self._maps), (source, self._colour)):
             sums = np.empty((len(values), values.shape[2]))

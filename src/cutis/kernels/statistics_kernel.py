@@ -4,8 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from cutis.colour.difference_kernel import colour_difference, relative_lab
 from cutis.kernels.compiling import compiled, on_all_cores
+from cutis.kernels.difference_kernel import colour_difference, relative_lab
+from cutis.kernels.warp_kernel import coordinate_of, slope_of
 
 PIECE, ROWS = 2048, 16
 """Texels, and rows of them, that a thread works on at a time."""
@@ -13,16 +14,9 @@ PIECE, ROWS = 2048, 16
 
 @on_all_cores(PIECE)
 def judge(
-    start: Any,
-    stop: Any,
-    truth: Any,
-    model: Any,
-    matrix: Any,
-    least: Any,
-    errors: Any,
-    angles: Any,
-    skin: Any,
-) -> None:
+    start: Any, stop: Any, truth: Any, model: Any, matrix: Any, least: Any, errors: Any,
+    angles: Any, skin: Any
+) -> None:  # fmt: skip
     """Fills skin (n,), and where that is True errors in CIEDE2000 and angles, ITA in degrees.
 
     Of pairs of linear RGB (n, 3), where truth decides what is skin. `least` are L* and C*ab that
@@ -38,59 +32,50 @@ def judge(
 
 
 @on_all_cores(ROWS)
-def coordinates(
-    start: Any, stop: Any, maps: Any, inside: Any, root: Any, low: Any, span: Any, out: Any
-) -> None:
-    """Fills out (h, W, 5) with network coordinates of five maps (h, W) where `inside`, else 0."""
+def coordinates(start: Any, stop: Any, maps: Any, inside: Any, axes: Any, out: Any) -> None:
+    """Fills out (h, W, p) with coordinates of p maps (h, W) where `inside`, else 0.
+
+    `axes` (5, p) are those of `warp.py`.
+    """
     for row in range(start, stop):
-        for p in range(5):
+        for p in range(out.shape[2]):
             values = maps[p]
             for column in range(inside.shape[1]):
                 u = np.float32(0)
                 if inside[row, column]:
-                    value = values[row, column]
-                    if root[p] == 3:
-                        value = np.cbrt(value)
-                    elif root[p] == 4:
-                        value = np.sqrt(np.sqrt(value))
-                    u = np.float32((value - low[p]) / span[p])
+                    u = np.float32(coordinate_of(values[row, column], axes, p))
                 out[row, column, p] = u
 
 
 @compiled()
 def count(u: Any, inside: Any, counts: Any) -> None:
-    """Adds coordinates (h, W, 5) where `inside` to counts (5, bins)."""
+    """Adds coordinates (h, W, p) where `inside` to counts (p, bins)."""
     bins = counts.shape[1]
     for row in range(u.shape[0]):
         for column in range(u.shape[1]):
             if inside[row, column]:
-                for p in range(5):
+                for p in range(counts.shape[0]):
                     place = int(u[row, column, p] * bins)
                     counts[p, min(max(place, 0), bins - 1)] += 1
 
 
 @compiled()
-def count_spread(
-    sigmas: Any, u: Any, inside: Any, root: Any, low: Any, span: Any, width: Any, even: Any,
-    share: Any
-) -> None:  # fmt: skip
-    """Counts standard deviations, five of (h, W), where `inside`.
+def count_spread(sigmas: Any, u: Any, inside: Any, axes: Any, even: Any, share: Any) -> None:
+    """Counts standard deviations, p of (h, W), where `inside`.
 
-    `even` (5, bins) in network coordinates, by the slope at u (h, W, 5): v = (low + u span)^root;
-    `share` (5, bins) as shares of the width of the range.
+    `even` (p, bins) in coordinates, by the slope at u (h, W, p); `share` (p, bins) as shares of the
+    width of the range.
     """
     bins = even.shape[1]
-    for row in range(u.shape[0]):
-        for column in range(u.shape[1]):
-            if inside[row, column]:
-                for p in range(5):
-                    sigma, base = sigmas[p][row, column], low[p] + span[p] * u[row, column, p]
-                    slope = span[p]
-                    for _ in range(root[p] - 1):
-                        slope *= base
-                    slope *= root[p]
+    for p in range(even.shape[0]):
+        values, width = sigmas[p], axes[4, p] - axes[3, p]
+        for row in range(u.shape[0]):
+            for column in range(u.shape[1]):
+                if inside[row, column]:
+                    sigma = values[row, column]
+                    slope = slope_of(u[row, column, p], axes, p)
                     even[p, max(min(int(sigma / slope * bins), bins - 1), 0)] += 1
-                    share[p, max(min(int(sigma / width[p] * bins), bins - 1), 0)] += 1
+                    share[p, max(min(int(sigma / width * bins), bins - 1), 0)] += 1
 
 
 @on_all_cores(ROWS)
