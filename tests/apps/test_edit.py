@@ -131,7 +131,7 @@ def test_rare_chromophores_are_kept_with_the_maps(maps, cutis, tmp_path):
     """By flag or preset, in saved maps, and in edits of those."""
     ill, again, once = tmp_path / "ill.exr", tmp_path / "again.png", tmp_path / "once.png"
     ended = cutis("edit", maps, "--preset", "jaundice", "--save-maps", ill, "-o", again)
-    assert ended.out.splitlines()[0] == "bilirubin 0.04"
+    assert ended.out.splitlines()[0] == "jaundice: bilirubin 0.04"
     skin = load_maps(ill)
     assert skin.rare == ("bilirubin",)
     assert not skin.original.bilirubin.any()
@@ -165,13 +165,15 @@ def test_the_capture_is_never_overwritten(maps, cutis, one_line, tmp_path):
 
 
 def test_a_capture_that_changed_or_went(maps, cutis, one_line, tmp_path):
-    face = maps.parents[1] / "face.png"
+    face, flags = maps.parents[1] / "face.png", ("--blood", "x2")
     out = tmp_path / "new.png"
     face.rename(tmp_path / "other.png")
-    assert "is missing; give it with --source" in one_line(cutis("edit", maps, "-o", out))
-    assert cutis("edit", maps, "--source", tmp_path / "other.png", "-o", out, "-q").code == 0
+    assert "is missing; give it with --source" in one_line(cutis("edit", maps, *flags, "-o", out))
+    assert (
+        cutis("edit", maps, *flags, "--source", tmp_path / "other.png", "-o", out, "-q").code == 0
+    )
     face.write_bytes((tmp_path / "other.png").read_bytes() + b"\n")
-    assert "has changed since" in one_line(cutis("edit", maps, "-o", tmp_path / "b.png"))
+    assert "has changed since" in one_line(cutis("edit", maps, *flags, "-o", tmp_path / "b.png"))
     assert not (tmp_path / "b.png").exists()
 
 
@@ -181,7 +183,7 @@ def test_maps_saved_from_python_find_their_capture(write_face, cutis, tmp_path):
     face = write_face(tmp_path)
     package.estimate(package.read(face)).save(tmp_path / "face.skin.exr")
     out = tmp_path / "same.png"
-    assert cutis("edit", tmp_path / "face.skin.exr", "-o", out).code == 0
+    assert cutis("edit", tmp_path / "face.skin.exr", "--melanin", "x1", "-o", out).code == 0
     assert (package.read(out).pixels == package.read(face).pixels).all()
 
 

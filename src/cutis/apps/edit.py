@@ -56,7 +56,7 @@ def edit(
     from cutis.errors import CutisError
     from cutis.jobs.edit import EditJob
 
-    if not changes and illuminant is None:
+    if not changes and illuminant is None and not edited_before(maps):
         raise CutisError(
             "there is nothing to do: give --preset tanning, --look NAME.look.json, a parameter "
             "flag such as --melanin x1.4, or --illuminant A"
@@ -82,6 +82,16 @@ def edit(
         if illuminant is not None:
             out.say(f"shown under {illuminant}")
         out.say(f"{one.changed:,} texels changed; wrote {one.output}")
+
+
+def edited_before(maps: Path) -> bool:
+    """Whether maps hold edits already, which are written with no others too."""
+    from cutis.maps import MapsFile
+    from cutis.textures.udim import TOKEN, udim_tiles
+
+    path = next(iter(udim_tiles(maps).values())) if TOKEN in maps.name else maps
+    with MapsFile(path) as file:
+        return bool(file.header.edits or file.header.changed)
 
 
 def write_look(look: "Look", path: Path, amount: float, mask: Path | None, job: "EditJob") -> None:

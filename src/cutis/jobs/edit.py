@@ -28,7 +28,7 @@ from cutis.maps import (
 from cutis.maps.estimating import Progress, nobody
 from cutis.maps.face import Memo
 from cutis.maps.skin_maps import Recolouring
-from cutis.maps.source import orientation_of, source_note
+from cutis.maps.source import source_note
 from cutis.optics import RARE_NAMES
 from cutis.textures import TextureFile, format_of, sweep, texture_writer
 from cutis.textures.udim import TOKEN, tile_of, udim_tiles

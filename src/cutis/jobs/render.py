@@ -21,7 +21,7 @@ from cutis.jobs.job import digest_of, tell, told
 from cutis.looks import asked, nothing
 from cutis.maps import Change, Edits, Face, bound
 from cutis.maps.estimating import Progress, nobody
-from cutis.maps.source import digest, orientation_of
+from cutis.maps.source import digest
 from cutis.render.blender import Blender, find_blender
 from cutis.render.cycles import INDEX, METHOD, base_colour, facing
 from cutis.render.cycles import radius as cycles_radius
@@ -152,14 +152,15 @@ class RenderJob:
         sweep(self.output.parent)
         result, log = Rendered(), Finished(Path(f"{stem}.frames.json"))
         with (
-            subject.opened() as (skin, _),
+            subject.opened() as (skin, changes),
             tempfile.TemporaryDirectory(prefix="cutis-") as folder,
         ):
             check_outputs(
                 names, {"the capture": None if skin.capture is None else skin.capture.path}
             )
             result.credits = credits_of(subject.scene.mesh, *skin.origins())
-            result.notes = tuple(skin.notes)
+            said = (note for change in changes for note in change.notes)
+            result.notes = (*skin.notes, *said)
             base = _recipe(subject, skin, blender) if sequence else {}
             feeds = _Feeds(subject, skin, Path(folder))
             recipes: dict[Path, tuple[Path, str]] = {}

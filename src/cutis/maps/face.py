@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Protocol
 
 from cutis.errors import CutisError
 from cutis.maps.changes import Change, Recipe
-from cutis.maps.statistics import MapStatistics, Quantiles
 from cutis.maps.source import orientation_of
+from cutis.maps.statistics import MapStatistics, Quantiles
 from cutis.textures import Frame, Orientation
 from cutis.textures.frame import noted_frame
 from cutis.textures.texture import bands
