@@ -266,7 +266,8 @@ def process():
 @pytest.fixture(scope="session")
 def estimated(write_face, face_mask, tmp_path_factory) -> Path:
     """out/ of `cutis estimate face.png`, the capture beside it; not to be written to."""
-    from cutis.jobs.estimate import CaptureFiles, EstimateJob
+    from cutis.jobs.estimate import EstimateJob
+    from cutis.jobs.outcome import CaptureFiles
 
     folder = tmp_path_factory.mktemp("estimated")
     face = write_face(folder)

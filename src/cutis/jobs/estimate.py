@@ -7,7 +7,7 @@ first. Each goes through in bands of rows, so that memory does not grow with the
 import contextlib
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
@@ -19,6 +19,7 @@ from cutis.inverse.calibration import Exposure, White
 from cutis.inverse.model import content_digest
 from cutis.jobs.files import made_folder
 from cutis.jobs.job import Told, digest_of, tell, told
+from cutis.jobs.outcome import Asked, CaptureFiles, Estimated
 from cutis.jobs.results import FILES, MADE_FROM, Found, alone, look, made_from
 from cutis.maps import FileCapture, Header, Surveyed, estimate_bands, load_model, survey
 from cutis.maps.estimating import Progress, nobody
@@ -26,7 +27,7 @@ from cutis.maps.skin_maps import Estimate
 from cutis.maps.source import source_note
 from cutis.maps.writing import maps_writer
 from cutis.optics import NAMES
-from cutis.report import Regions, Report, RunningReport
+from cutis.report import Regions, RunningReport
 from cutis.report.page import write_report
 from cutis.report.previews import Previews
 from cutis.textures import (
@@ -38,33 +39,6 @@ from cutis.textures import (
     sweep,
 )
 from cutis.textures.udim import tile_numbers
-
-Asked = dict[str, Told]
-
-
-@dataclass(frozen=True)
-class CaptureFiles:
-    """A capture with the mask and the picture of regions that belong to it."""
-
-    face: Path
-    mask: Path | None = None
-    regions: Path | None = None
-
-
-@dataclass(frozen=True)
-class Estimated:
-    """What came of a capture: its report, or in one line why there is none.
-
-    `there` says that the result was there already, made of the same in the same way; `changed`
-    names the contents for whose sake it was made again.
-    """
-
-    face: Path
-    report: Report | None = None
-    failure: str | None = None
-    there: bool = False
-    changed: tuple[str, ...] = ()
-    pictures: dict[str, Any] = field(default_factory=dict, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -267,7 +241,7 @@ class _Run:
                 f"{stem}.model.exr", "RGB", opened.shape, kind, header, frame=opened.texture.frame
             )
         )
-        self._open_maps = lambda first: stack.enter_context(
+        self._open_maps: Callable[[Estimate], Any] = lambda first: stack.enter_context(
             maps_writer(f"{stem}.skin.exr", self._header(first), opened.shape, kind)
         )
 

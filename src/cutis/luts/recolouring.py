@@ -9,8 +9,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cutis.arrays import Colours, Floats
 from cutis.colour import delta_e
 from cutis.errors import CutisError
 from cutis.inverse.calibration import Calibration
@@ -26,7 +26,7 @@ WHOLE, NONE = 8.0, 20.0
 """ΔE00 between a colour and the model's up to which an edit is whole, and from which there is
 none."""
 
-Recolouring = Callable[[NDArray[np.floating]], NDArray[np.float32]]
+Recolouring = Callable[[Floats], Colours]
 
 
 def recolouring(
@@ -45,11 +45,11 @@ def recolouring(
     inverse = load_model(model)
     wanted = asked(edits, amount)
     wanted.check_everywhere()
-    change = wanted.for_face(face or Face(Colours(inverse)))
+    change = wanted.for_face(face or Face(NoFace(inverse)))
     known = calibration or Calibration()
     light = replace(known, gains=(1.0, 1.0, 1.0))
 
-    def recoloured(captured: NDArray[np.floating]) -> NDArray[np.float32]:
+    def recoloured(captured: Floats) -> Colours:
         result = np.array(captured, dtype=np.float32)
         colours = known.apply(result)
         skins = inverse.encode(colours)
@@ -71,7 +71,7 @@ def recolouring(
     return recoloured
 
 
-def _tile(skins: NDArray[np.float32], colours: NDArray[np.float32], knows: Model | None) -> Tile:
+def _tile(skins: Colours, colours: Colours, knows: Model | None) -> Tile:
     """Skins (n, 5) as a row of maps, with σ and confidence of their colours if a model is given."""
     values = {name: skins[None, :, column] for column, name in enumerate(NAMES)}
     maps = Maps(values, np.ones((1, len(skins)), np.float32))
@@ -82,7 +82,7 @@ def _tile(skins: NDArray[np.float32], colours: NDArray[np.float32], knows: Model
     return Tile(maps, sigmas, (), trust[None, :, len(NAMES)])
 
 
-class Colours:
+class NoFace:
     """Colours of no face, as a `Source` of the maps that a model finds in them."""
 
     shape, tile, known = (1, 1), TileOf(), None
@@ -107,7 +107,7 @@ class Colours:
         raise NotImplementedError
 
 
-def fading(error: NDArray[np.floating]) -> NDArray[np.floating]:
+def fading(error: Floats) -> Floats:
     """Share of an edit for colours that the model misses by `error` ΔE00: smooth from 1 to 0."""
     x = np.clip((error - WHOLE) / (NONE - WHOLE), 0.0, 1.0)
     return 1.0 - x * x * (3.0 - 2.0 * x)

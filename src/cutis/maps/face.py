@@ -6,7 +6,8 @@ everything.
 """
 
 import contextlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -29,11 +30,12 @@ if TYPE_CHECKING:
 class TileOf:
     """Which tile of a UDIM set maps are of, and the files of maps of all its tiles by number.
 
-    What is of no set is tile 1001, and has no files.
+    `read` opens one of them. What is of no set is tile 1001, and has no files.
     """
 
     number: int = FIRST
     files: Mapping[int, Path] = field(default_factory=dict)
+    read: "Callable[[Path], AbstractContextManager[Source]] | None" = None
 
 
 class Source(Protocol):
@@ -145,15 +147,13 @@ class Face:
         if number == self.number:
             yield self
             return
-        from cutis.maps.reading import MapsFile
-
-        path = self._source.tile.files[number]
-        if not path.is_file():
+        path, read = self._source.tile.files[number], self._source.tile.read
+        if read is None or not path.is_file():
             raise CutisError(
                 f"{path}: is a tile of the same face and is not there; put it beside the others, "
                 "since looks take medians over all tiles"
             )
-        with MapsFile(path) as file:
+        with read(path) as file:
             yield Face(file, self._done, memo=self._memo)
 
     @property

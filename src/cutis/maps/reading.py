@@ -172,7 +172,7 @@ class MapsFile(Closing):
         pattern = udim_pattern(self.path)
         files = {} if pattern is None else {n: tile_of(pattern, n) for n in self.header.tiles}
         own = next((n for n, path in files.items() if path == self.path), None)
-        return TileOf() if own is None else TileOf(own, files)
+        return TileOf() if own is None else TileOf(own, files, MapsFile)
 
     def knows(self, name: str) -> bool:
         """Whether there is a σ of a map, or "confidence"."""
