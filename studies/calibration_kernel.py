@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numba import njit, prange
 
-from cutis.albedo.spectral_table import chebyshev, chebyshev_to_spline
+from cutis.albedo.spectral_table import chebyshev, to_splines
 from cutis.optics import PARAMETERS
 from cutis.transport import two_layer_albedo
 
@@ -32,7 +32,7 @@ def dimensionless_table(anisotropy: np.ndarray, dimension: int, index: float) ->
             dimension=dimension, refractive_index=index, count=20,
         )  # fmt: skip
         for a in range(3):
-            matrix = chebyshev_to_spline(NODES[a], CELLS[a])
+            matrix = to_splines(NODES[a], CELLS[a])
             values = np.moveaxis(np.tensordot(matrix, values, axes=(1, a)), 0, a)
         tables.append(values)
     return np.ascontiguousarray(tables)

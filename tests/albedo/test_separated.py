@@ -5,7 +5,8 @@ import pytest
 
 from cutis.albedo import albedo_space, spectral_table, uniform
 from cutis.albedo.separated import TERMS, separate
-from cutis.albedo.spectral_table import CELLS, spline_basis
+from cutis.albedo.spectral_table import CELLS
+from cutis.kernels.splines import basis
 from cutis.optics import ALIAGA2022, GITLINA2020, WAVELENGTHS, Tissue
 
 
@@ -25,7 +26,7 @@ def test_reflectance_is_the_tensor_product_spline():
     space, table = albedo_space(tissue), spectral_table(tissue)
     got = space.reflectance(skins)
     for band in range(0, 41, 5):
-        e, d, t = map(spline_basis, coordinates(tissue, skins, band), CELLS)
+        e, d, t = map(basis, coordinates(tissue, skins, band), CELLS)
         expected = np.einsum("ne,nd,nt,edt->n", e, d, t, table.coefficients[band], optimize=True)
         np.testing.assert_allclose(got[:, band], expected, atol=2e-6)
 
@@ -37,7 +38,7 @@ def test_products_multiply_out_to_the_table(tissue):
     upper, lower = separate(table)
     assert upper.shape == (41, CELLS[0] + 3, CELLS[2] + 3, TERMS)
     assert lower.shape == (41, CELLS[1] + 3, TERMS)
-    ends = [spline_basis(np.linspace(0, 1, 2 * cells + 1), cells) for cells in CELLS]
+    ends = [basis(np.linspace(0, 1, 2 * cells + 1), cells) for cells in CELLS]
     product = np.einsum("betr,bdr->bedt", upper.astype(float), lower.astype(float))
     error = product - table.coefficients
     values = np.einsum("xe,yd,zt,bedt->bxyz", *ends, error, optimize=True)

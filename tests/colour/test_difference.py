@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from colour.difference import delta_E_CIE2000
 
-from cutis.colour import decode_srgb, delta_e, difference_kernel, is_skin_colour, ita, lab
+from cutis.colour import decode_srgb, delta_e, is_skin_colour, ita, lab
 from cutis.colour.spectra import XYZ_TO_SRGB
+from cutis.kernels import difference_kernel
 
 SKINS = np.random.default_rng(5).random((200, 3)) * [0.8, 0.5, 0.4]
 

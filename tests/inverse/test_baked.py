@@ -5,8 +5,8 @@ from importlib import resources
 import numpy as np
 import pytest
 
-from cutis.albedo.spectral_table import spline_basis
 from cutis.inverse.baked import Baked, load_baked, save_baked
+from cutis.kernels.splines import basis
 from cutis.optics import PARAMETERS, from_coordinates
 
 RNG = np.random.default_rng(8)
@@ -35,7 +35,7 @@ def plain(baked: Baked, rgb: np.ndarray) -> np.ndarray:
     chart = green**0.25, red / (red + green), blue / (blue + green)
     ends = baked.chart.low, baked.chart.high, baked.chart.cells
     bases = [
-        spline_basis((x - low) / (high - low), cells)
+        basis((x - low) / (high - low), cells)
         for x, low, high, cells in zip(chart, *ends, strict=True)
     ]
     return np.einsum("na,nb,nc,abcp->np", *bases, baked.coefficients, optimize=True).clip(0, 1)

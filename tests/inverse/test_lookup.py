@@ -12,7 +12,7 @@ from cutis.inverse.lookup import (
     lookup_tensor,
     tensor_of_spectra,
 )
-from cutis.inverse.nearest import curve_order
+from cutis.kernels.nearest import curve_order
 from cutis.maps import load_model
 from cutis.optics import PARAMETERS, to_coordinates
 

@@ -79,14 +79,14 @@ def test_the_chart_holds_the_albedo_space():
 
 def test_raw_values_are_the_plain_sum():
     coefficients = RNG.standard_normal((6, 7, 8, 6)).astype(np.float32)
-    from cutis.albedo.spectral_table import spline_basis
     from cutis.inverse.baked import Chart
+    from cutis.kernels.splines import basis
 
     chart = Chart((0.3, 0.4, 0.1), (0.9, 0.9, 0.6), (3, 4, 5))
     a, b, c = RNG.uniform((0.3, 0.4, 0.1), (0.9, 0.9, 0.6), (200, 3)).T
     rgb = np.stack([a**4 * b / (1 - b), a**4, a**4 * c / (1 - c)], axis=1)
     ends = zip((a, b, c), chart.low, chart.high, chart.cells, strict=True)
-    bases = [spline_basis((x - low) / (high - low), n) for x, low, high, n in ends]
+    bases = [basis((x - low) / (high - low), n) for x, low, high, n in ends]
     plain = np.einsum("na,nb,nc,abcp->np", *bases, coefficients, optimize=True)
     table = Baked(coefficients, chart)
     assert RAW == 2

@@ -69,7 +69,7 @@ def test_what_one_run_compiles_the_next_finds(warm):
     assert any("lab_kernel" in file.name for file in files)
     before = {file: file.stat().st_mtime_ns for file in files}
     misses = (
-        "from cutis.colour.difference_kernel import relative_lab\n"
+        "from cutis.kernels.difference_kernel import relative_lab\n"
         "print(sum(relative_lab.stats.cache_misses.values()))\n"
     )
     found = Run(warm, LAB + misses)

@@ -19,7 +19,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutis.albedo.space import AlbedoSpace, albedo_space
-from cutis.albedo.spectral_table import chebyshev, chebyshev_to_spline, spline_basis
+from cutis.albedo.spectral_table import to_splines
+from cutis.kernels.splines import basis, chebyshev
 from cutis.optics import ALIAGA2022, TISSUES, Tissue
 from cutis.optics.parameters import BLOOD, EUMELANIN, MELANIN, OXYGENATION, PARAMETERS, THICKNESS
 
@@ -66,7 +67,7 @@ class ColourTable:
 
     def rgb(self, parameters: ArrayLike) -> NDArray[np.float32]:
         """(..., 5) parameters in their units → (..., 3) linear sRGB under D65."""
-        from cutis.albedo.colour_kernel import decode_kernel
+        from cutis.albedo.colour_table_kernel import decode_kernel
 
         skins = np.ascontiguousarray(parameters, dtype=np.float32)
         flat = skins.reshape(-1, len(PARAMETERS))
@@ -76,10 +77,9 @@ class ColourTable:
         return out.reshape(*skins.shape[:-1], 3)
 
     @cached_property
-    def _scaling(self) -> tuple[tuple[np.float32, ...], tuple[np.float32, ...]]:
-        low = tuple(np.float32(low) for low, _ in ENDS)
-        scale = (n / (high - low) for n, (low, high) in zip(CELLS, ENDS, strict=True))
-        return low, tuple(map(np.float32, scale))
+    def _scaling(self) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+        low, high = np.array(ENDS).T
+        return low.astype(np.float32), (np.array(CELLS) / (high - low)).astype(np.float32)
 
     def reference(self, parameters: ArrayLike) -> NDArray[np.float64]:
         """The same in plain float64 NumPy, (n, 5) → (n, 3): the oracle of the fast form."""
@@ -88,7 +88,7 @@ class ColourTable:
         for axis, (cells, (low, high)) in enumerate(zip(CELLS, ENDS, strict=True)):
             values = skins[:, PARAMETERS.index(AXES[axis])]
             x = (np.asarray(to_axis(axis, values), float) - low) / (high - low)
-            bases.append(spline_basis(x, cells, degree=2))
+            bases.append(basis(x, cells, degree=2))
         above = np.einsum("nm,ne,nt,metr->nr", *bases[:3], self.upper, optimize=True)
         below = np.einsum("nb,no,cbor->ncr", *bases[3:], self.lower, optimize=True)
         return np.einsum("nr,ncr->nc", above, below)
@@ -109,7 +109,7 @@ def build_colours(space: AlbedoSpace) -> ColourTable:
     share = np.sqrt(sizes[:TERMS])
     upper = (left[:, :TERMS] * share / weight).reshape(*NODES[:3], TERMS)
     lower = (right[:TERMS].T * share).reshape(*NODES[3:], 3, TERMS)
-    to_spline = [chebyshev_to_spline(n, cells, 2) for n, cells in zip(NODES, CELLS, strict=True)]
+    to_spline = [to_splines(n, cells, 2) for n, cells in zip(NODES, CELLS, strict=True)]
     upper = np.einsum("am,be,ct,metr->abcr", *to_spline[:3], upper, optimize=True)
     lower = np.einsum("ab,do,bocr->cadr", *to_spline[3:], lower, optimize=True)
     return ColourTable(

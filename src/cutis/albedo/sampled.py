@@ -8,16 +8,14 @@ own wavelengths nothing is blended.
 """
 
 from functools import cached_property
-from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cutis.albedo.space import AlbedoSpace, absorptions
+from cutis.albedo.space import AlbedoSpace, Model, mixture_of
 from cutis.errors import CutisError
 from cutis.optics import WAVELENGTHS
 
-Array: TypeAlias = NDArray[Any]
 BAND = 1 << 14
 """Skins evaluated at a time."""
 
@@ -40,11 +38,10 @@ class SampledSpace:
         self._blends = np.where(on, 0.0, share).astype(np.float32)
 
     @cached_property
-    def model(self) -> tuple[Array, Array, Array, Array, Array, Array]:
-        """What the kernels of `sampled_kernel.py` take after the slots."""
-        tissue, lam = self.space.tissue, self.wavelengths
-        _, table, low, scale, _ = self.space.model
-        return (absorptions(tissue, lam), self._bands, self._blends, table, low, scale)
+    def model(self) -> Model:
+        """The model of `slopes_kernel.py` at these wavelengths."""
+        mixture = mixture_of(self.space.tissue, self.wavelengths)
+        return (*mixture, self._bands, self._blends, *self.space.tables)
 
     def reflectance(self, parameters: ArrayLike) -> NDArray[np.float32]:
         """(m, p) free parameters of the tissue → (m, n) albedo."""
@@ -52,16 +49,14 @@ class SampledSpace:
 
     def gradient(self, parameters: ArrayLike) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         """(m, p) free parameters → (m, n) albedo and (m, n, p) its slopes, per unit of each."""
-        from cutis.albedo.sampled_kernel import spectra_and_slopes
+        from cutis.albedo.slopes_kernel import spectra_and_slopes
 
         flat, _ = self.space.rows(parameters)
         skins = np.ascontiguousarray(flat, dtype=np.float32)
         spectra = np.empty((len(skins), len(self.wavelengths)), dtype=np.float32)
-        slopes = np.empty((*spectra.shape, len(self.space.slots)), dtype=np.float32)
+        slopes = np.empty((*spectra.shape, skins.shape[1]), dtype=np.float32)
         for start in range(0, len(skins), BAND):
             part = slice(start, start + BAND)
             some = skins[part]
-            spectra_and_slopes(
-                len(some), some, self.space.slots, *self.model, spectra[part], slopes[part]
-            )
+            spectra_and_slopes(len(some), some, self.model, spectra[part], slopes[part])
         return spectra, slopes[..., list(self.space.places)]

@@ -11,7 +11,7 @@ more than twice. Eight terms carry it to 3e-7, so that 4 · 4 + 4 nodes of eight
 import numpy as np
 from numpy.typing import NDArray
 
-from cutis.albedo.spectral_table import CELLS, NODES, SpectralTable, chebyshev_to_spline
+from cutis.albedo.spectral_table import CELLS, NODES, SpectralTable, to_splines
 
 TERMS = 8
 """Products per wavelength: the lanes of a vector."""
@@ -25,7 +25,7 @@ def separate(table: SpectralTable) -> tuple[NDArray[np.float32], NDArray[np.floa
     share = np.sqrt(sizes[:, None, :TERMS])
     upper = (left[..., :TERMS] * share).reshape(bands, *rest, TERMS)
     lower = np.swapaxes(right, 1, 2)[..., :TERMS] * share
-    over_e, over_d, over_t = map(chebyshev_to_spline, NODES, CELLS)
+    over_e, over_d, over_t = map(to_splines, NODES, CELLS)
     upper = np.einsum("xe,yt,betr->bxyr", over_e, over_t, upper, optimize=True)
     lower = np.einsum("xd,bdr->bxr", over_d, lower)
     return np.ascontiguousarray(upper, np.float32), np.ascontiguousarray(lower, np.float32)

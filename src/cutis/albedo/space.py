@@ -18,9 +18,13 @@ from cutis.optics import (
     Parameter,
     Tissue,
 )
-from cutis.optics.tissue import CAROTENE_IN_DERMIS
 
 Array: TypeAlias = NDArray[np.float32]
+Mixture: TypeAlias = tuple[NDArray[np.int64], Array, Array]
+Model: TypeAlias = tuple[
+    NDArray[np.int64], Array, Array, NDArray[np.intp], Array, Array, Array, Array, Array
+]
+NO_WEIGHTS = np.empty((0, 3), dtype=np.float32)
 BAND = 1 << 18
 """Texels converted at a time."""
 
@@ -37,7 +41,6 @@ class AlbedoSpace:
         tissue = table.tissue
         self.tissue = tissue
         self.table = table
-        self._spectra = absorptions(tissue, WAVELENGTHS)
         self._axes = (
             table.low.astype(np.float32),
             (np.array(CELLS) / (table.high - table.low)).astype(np.float32),
@@ -47,15 +50,25 @@ class AlbedoSpace:
     def _to_rgb(self) -> NDArray[np.float32]:
         return spectrum_to_rgb(WAVELENGTHS).astype(np.float32)
 
-    @property
-    def model(self) -> tuple[Array, Array, Array, Array, Array]:
-        """What the kernels of `spline.py` take after the slots: spectra to RGB weights."""
-        return (self._spectra, self.table.coefficients, *self._axes, self._to_rgb)
+    @cached_property
+    def _mixture(self) -> Mixture:
+        return mixture_of(self.tissue, WAVELENGTHS)
 
     @cached_property
-    def _separated(self) -> tuple[Array, Array, Array, Array, Array]:
-        """What the kernels of `spectrum_kernel.py` take after the slots."""
-        return (self._spectra, *separate(self.table), *self._axes)
+    def tables(self) -> tuple[Array, Array, Array, Array]:
+        """Products of the table and ends of its axes: the last of the model of `slopes_kernel`."""
+        return (*separate(self.table), *self._axes)
+
+    @cached_property
+    def model(self) -> Model:
+        """The model of `slopes_kernel.py` at the wavelengths of the table."""
+        bands = np.arange(len(WAVELENGTHS))
+        return (*self._mixture, bands, np.zeros(len(bands), np.float32), *self.tables)
+
+    @property
+    def rgb_weights(self) -> Array:
+        """(41, 3) weights of the bands in linear sRGB under D65."""
+        return self._to_rgb
 
     def reflectance(
         self, parameters: ArrayLike, out: NDArray[np.float32] | None = None
@@ -65,8 +78,6 @@ class AlbedoSpace:
         Written into `out`, C-contiguous float32 of that shape, when it is given (2048² skins take
         0.7 GB). Raises CutisError when `out` is another kind of array.
         """
-        from cutis.albedo.spectrum_kernel import reflectance_kernel
-
         flat, shape = self.rows(parameters)
         whole = (*shape, len(WAVELENGTHS))
         if out is None:
@@ -75,8 +86,7 @@ class AlbedoSpace:
             raise CutisError(f"out must be a C-contiguous float32 array of shape {whole}")
         spectra = out.reshape(-1, len(WAVELENGTHS))
         for band in _bands(len(flat)):
-            some = _float32(flat[band])
-            reflectance_kernel(len(some), some, self.slots, *self._separated, spectra[band])
+            self._sum(flat[band], NO_WEIGHTS, spectra[band])
         return out
 
     def rgb(self, parameters: ArrayLike, light: LightLike = "D65") -> NDArray[np.float32]:
@@ -84,30 +94,33 @@ class AlbedoSpace:
 
         Lights are those of `colour.illuminant`; CutisError for others.
         """
-        from cutis.albedo.spectrum_kernel import rgb_kernel
-
         flat, shape = self.rows(parameters)
         out = np.empty((len(flat), 3), dtype=np.float32)
         weights = self._to_rgb
         if light != "D65":
             weights = spectrum_to_rgb(WAVELENGTHS, light).astype(np.float32)
         for band in _bands(len(flat)):
-            some = _float32(flat[band])
-            rgb_kernel(len(some), some, self.slots, *self._separated, weights, out[band])
+            self._sum(flat[band], weights, out[band])
         return out.reshape(*shape, 3)
+
+    def _sum(self, skins: NDArray[np.floating], weights: Array, out: Array) -> None:
+        from cutis.albedo.spectra_kernel import reflectance_kernel
+
+        some = _float32(skins)
+        reflectance_kernel(len(some), some, *self._mixture, *self.tables, weights, out)
 
     def rgb_gradient(
         self, parameters: ArrayLike
     ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         """(..., 5) parameters → (..., 3) linear sRGB and (..., 3, 5) its slope per parameter."""
-        from cutis.albedo.spline import rgb_gradient_kernel
+        from cutis.albedo.slopes_kernel import colours_and_slopes
 
         flat, shape = self.rows(parameters)
         out = np.empty((len(flat), 3), dtype=np.float32)
         slope = np.empty((len(flat), 3, flat.shape[1]), dtype=np.float32)
         for band in _bands(len(flat)):
             some = _float32(flat[band])
-            rgb_gradient_kernel(len(some), some, self.slots, *self.model, out[band], slope[band])
+            colours_and_slopes(len(some), some, self.model, self._to_rgb, out[band], slope[band])
         slope = slope[..., list(self.places)]
         return out.reshape(*shape, 3), slope.reshape(*shape, 3, len(self.places))
 
@@ -115,11 +128,6 @@ class AlbedoSpace:
     def every_parameter(self) -> tuple[Parameter, ...]:
         """What kernels take: all of the tissue's, fixed or free."""
         return self.tissue.every_parameter
-
-    @cached_property
-    def slots(self) -> tuple[int, ...]:
-        """One entry per parameter that kernels take; see `spline.py`."""
-        return tuple(range(len(self.every_parameter)))
 
     @cached_property
     def places(self) -> tuple[int, ...]:
@@ -139,25 +147,10 @@ class AlbedoSpace:
         return flat, values.shape[:-1]
 
 
-def absorptions(tissue: Tissue, wavelengths: NDArray[np.float64]) -> NDArray[np.float32]:
-    """(6 or 10, n) the `spectra` of `spline.py` at wavelengths (n,), nm."""
-    lam = wavelengths
-    spectra = [
-        tissue.eumelanin(lam),
-        tissue.pheomelanin(lam),
-        tissue.epidermis_background(lam),
-        *tissue.whole_blood(lam),
-        tissue.baseline(lam),
-    ]
-    if tissue.rare_chromophores:
-        carotene = tissue.added_carotene(lam)
-        spectra += [
-            tissue.added_bilirubin(lam),
-            carotene,
-            CAROTENE_IN_DERMIS * carotene,
-            tissue.brown_blood(lam),
-        ]
-    return np.array(spectra, dtype=np.float32)
+def mixture_of(tissue: Tissue, wavelengths: NDArray[np.float64]) -> Mixture:
+    """The mixture of a tissue at wavelengths (n,), nm, as kernels take it."""
+    recipe, above, below = tissue.mixture(wavelengths)
+    return recipe, above.astype(np.float32), below.astype(np.float32)
 
 
 def _float32(values: NDArray[np.floating]) -> NDArray[np.float32]:

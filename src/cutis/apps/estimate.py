@@ -10,7 +10,8 @@ from cutis.apps import options
 from cutis.errors import CutisError
 
 if TYPE_CHECKING:
-    from cutis.jobs.estimate import Estimated, EstimateJob
+    from cutis.jobs.estimate import EstimateJob
+    from cutis.jobs.outcome import Estimated
 
 Faces = Annotated[
     list[str],
@@ -73,8 +74,9 @@ def estimate(
 
     from cutis.apps import estimate_words as words
     from cutis.apps.console import bar
-    from cutis.jobs.estimate import CaptureFiles, EstimateJob
+    from cutis.jobs.estimate import EstimateJob
     from cutis.jobs.inputs import capture_sets, companion
+    from cutis.jobs.outcome import CaptureFiles
     from cutis.jobs.runners import cluster as on_cluster
     from cutis.jobs.runners import here, processes
     from cutis.jobs.sets import estimate_sets

@@ -8,7 +8,8 @@ from cutis.apps.console import out, print_statistics
 from cutis.report import summary
 
 if TYPE_CHECKING:
-    from cutis.jobs.estimate import Estimated, EstimateJob
+    from cutis.jobs.estimate import EstimateJob
+    from cutis.jobs.outcome import Estimated
     from cutis.report import Report
 
 

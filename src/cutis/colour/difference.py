@@ -30,7 +30,7 @@ def _flat(rgb: ArrayLike) -> NDArray[np.floating]:
 
 def lab(rgb: ArrayLike) -> NDArray[np.float32]:
     """(..., 3) linear sRGB → (..., 3) CIELAB under D65 (L* 0–100, a*, b*)."""
-    from cutis.colour.difference_kernel import lab_kernel
+    from cutis.kernels.difference_kernel import lab_kernel
 
     flat = _flat(rgb)
     result = np.empty(flat.shape, dtype=np.float32)
@@ -40,7 +40,7 @@ def lab(rgb: ArrayLike) -> NDArray[np.float32]:
 
 def delta_e(rgb_a: ArrayLike, rgb_b: ArrayLike) -> NDArray[np.float32]:
     """CIEDE2000 between (..., 3) linear sRGB colours → (...) [sharma2005ciede2000]."""
-    from cutis.colour.difference_kernel import delta_e_kernel
+    from cutis.kernels.difference_kernel import delta_e_kernel
 
     a, b = _flat(rgb_a), _flat(rgb_b)
     result = np.empty(len(a), dtype=np.float32)

@@ -22,6 +22,8 @@ from cutis.albedo import AlbedoSpace, albedo_space
 from cutis.inverse.fit import fit
 from cutis.inverse.network import Perceptron
 from cutis.inverse.prior import SkinPrior
+from cutis.kernels.splines import through_nodes
+from cutis.optics import axes
 
 PRECISION = (3.0, 1.0, 1.0, 3.0, 1.0)
 """Inverse variances of the logits around the estimate of an encoder."""
@@ -31,6 +33,8 @@ TOLERANCE = 0.01
 """Relative colour error worth one standard deviation of the prior (see `fit.py`)."""
 COORDINATES, UNITS, RAW = 0, 1, 2
 """What a look-up gives: coordinates in [0, 1], parameters in their units, the values as baked."""
+
+AXES = axes().astype(np.float32)
 
 Solver = Callable[[NDArray[np.float32]], NDArray[np.floating]]
 
@@ -80,13 +84,12 @@ class Baked:
 
     def _look_up(self, colours: ArrayLike, form: int, count: int) -> NDArray[np.float32]:
         from cutis.inverse.baked_kernel import look_up
-        from cutis.inverse.units_kernel import RANGES
 
         rgb = np.ascontiguousarray(colours, dtype=np.float32)
         out = np.empty((len(rgb), count), dtype=np.float32)
         low, high = np.array(self.chart.low), np.array(self.chart.high)
         scale = (np.array(self.chart.cells) / (high - low)).astype(np.float32)
-        look_up(len(rgb), rgb, self._lanes, low.astype(np.float32), scale, RANGES, form, out)
+        look_up(len(rgb), rgb, self._lanes, low.astype(np.float32), scale, AXES, form, out)
         return out
 
     @cached_property
@@ -121,22 +124,8 @@ def bake(solve: Solver, chart: Chart, progress: Callable[[int, int], None] | Non
             progress(min(start + step, len(colours)), len(colours))
     nodes = np.concatenate(parts)
     shape = (*(n + 1 for n in chart.cells), nodes.shape[1])
-    return Baked(_splines(nodes.reshape(shape)), chart)
-
-
-def _splines(values: NDArray[np.floating]) -> NDArray[np.float32]:
-    """Values at the nodes of each axis → coefficients with natural ends, one more at each end."""
-    coefficients = values.astype(np.float64)
-    for axis in range(3):
-        n = coefficients.shape[axis]
-        system = np.zeros((n + 2, n + 2))
-        rows = np.arange(n)
-        for shift, weight in ((0, 1 / 6), (1, 2 / 3), (2, 1 / 6)):
-            system[rows + 1, rows + shift] = weight
-        system[0, :3] = system[-1, -3:] = (1, -2, 1)  # no curvature at the ends
-        inverse = np.linalg.inv(system)[:, 1:-1]
-        coefficients = np.moveaxis(np.tensordot(inverse, coefficients, axes=(1, axis)), 0, axis)
-    return np.ascontiguousarray(coefficients, dtype=np.float32)
+    coefficients = through_nodes(nodes.reshape(shape), 3, "natural")
+    return Baked(coefficients.astype(np.float32), chart)
 
 
 def save_baked(baked: Baked, file: Path) -> None:

@@ -25,7 +25,7 @@ from cutis.colour import LightLike, light_conversion
 from cutis.colour.light import light as named_light
 from cutis.errors import CutisError
 from cutis.inverse.fit import fit
-from cutis.inverse.nearest import curve_order
+from cutis.kernels.nearest import curve_order
 from cutis.optics import ALIAGA2022, Tissue, from_coordinates
 
 SAMPLE = 1600

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from cutis.albedo import AlbedoSpace, albedo_space
 from cutis.errors import CutisError
-from cutis.optics import ALIAGA2022, NAMES, Tissue
+from cutis.optics import ALIAGA2022, Tissue, axes
 
 CENTRE, TOLERANCE = 0.4, 0.001
 """Prior of `explain`: where every coordinate is expected, and so loosely that colours decide."""
@@ -55,29 +55,14 @@ def fit(
     centre = np.zeros((len(c), len(every)), dtype=np.float32)
     centre[:, free] = given
     weight = 1 / (tolerance * (np.maximum(c.mean(axis=1), 0.0) + 0.01) ** (2 / 3))
-    power = np.array([p.root for p in every], dtype=np.float32)
-    low = np.array([p.low ** (1 / p.root) for p in every], dtype=np.float32)
-    span = np.array([p.high ** (1 / p.root) for p in every], dtype=np.float32) - low
-    for name, value in space.tissue.fixed:  # a range without extent: nothing moves there
-        i = NAMES.index(name)
-        low[i], span[i] = value ** (1 / every[i].root), 0.0
+    ranges = axes(every, dict(space.tissue.fixed)).astype(np.float32)
     prior = np.eye(len(every), dtype=np.float32)
     prior[np.ix_(free, free)] = precision
     out = np.empty_like(centre)
     fit_kernel(
-        len(c),
-        c,
-        centre,
-        weight.astype(np.float32),
-        prior,
-        iterations,
-        low,
-        span,
-        power,
-        space.slots,
-        space.model,
-        out,
-    )
+        len(c), c, centre, weight.astype(np.float32), prior, iterations, ranges, space.model,
+        space.rgb_weights, out,
+    )  # fmt: skip
     return logistic(out[:, free])
 
 

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutis.albedo.kubelka_munk import KubelkaMunkSkin
-from cutis.inverse.nearest import NearestColour, finite_colours
+from cutis.kernels.nearest import NearestColour, finite_colours
+from cutis.kernels.splines import through_nodes
 from cutis.optics import PARAMETERS, to_coordinates
 from cutis.optics.parameters import BLOOD, MELANIN
 
@@ -41,7 +42,7 @@ class KubelkaMunkInverse:
     @cached_property
     def _table(self) -> NDArray[np.float64]:
         """B-spline coefficients of the surface, one more than corners at each end."""
-        return _splines(self._colours)
+        return through_nodes(self._colours, 2, "not-a-knot")
 
     @cached_property
     def _tree(self) -> NearestColour:
@@ -85,18 +86,3 @@ class KubelkaMunkInverse:
 def kubelka_munk_inverse(skin: KubelkaMunkSkin | None = None) -> KubelkaMunkInverse:
     """The inverse of `skin` (the default one), its table made once per process."""
     return KubelkaMunkInverse(skin or KubelkaMunkSkin())
-
-
-def _splines(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Values at the nodes of the first two axes → cubic B-spline coefficients, not-a-knot ends."""
-    coefficients = values
-    for axis in range(2):
-        n = coefficients.shape[axis]
-        system = np.zeros((n + 2, n + 2))
-        rows = np.arange(n)
-        for shift, weight in ((0, 1 / 6), (1, 2 / 3), (2, 1 / 6)):
-            system[rows + 1, rows + shift] = weight
-        system[0, :5] = system[-1, -5:] = (1, -4, 6, -4, 1)  # one cubic over the two end cells
-        inverse = np.linalg.inv(system)[:, 1:-1]
-        coefficients = np.moveaxis(np.tensordot(inverse, coefficients, axes=(1, axis)), 0, axis)
-    return np.ascontiguousarray(coefficients)

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from cutis.albedo import AlbedoSpace, albedo_space, grid_skins
 from cutis.colour import reflectance_to_rgb
 from cutis.errors import CutisError
-from cutis.inverse.nearest import NearestColour, finite_colours
+from cutis.kernels.nearest import NearestColour, finite_colours
 from cutis.optics import PARAMETERS, WAVELENGTHS, to_coordinates
 
 SHAPES = {"lookup": (64, 32, 5, 5, 5), "lookup-55k": (64, 32, 3, 3, 3)}

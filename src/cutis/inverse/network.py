@@ -50,7 +50,7 @@ class Perceptron:
     @cached_property
     def _packed(self) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.int64]]:
         """Weights (layers, blocks, inputs, OUTPUTS), biases and sizes as the kernel takes them."""
-        from cutis.inverse.dense_lanes import OUTPUTS
+        from cutis.kernels.lanes import OUTPUTS
 
         sizes = [self.weights[0].shape[1], *(len(b) for b in self.biases)]
         blocks = -(-max(sizes[1:]) // OUTPUTS)

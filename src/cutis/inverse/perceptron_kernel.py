@@ -1,7 +1,7 @@
 """Compiled forward pass of a small perceptron over many texels.
 
 A tile of texels goes through all layers while it is in the nearest cache, a few outputs of each
-layer at a time (`dense_lanes.py`), followed by what their sums go through. PyPI's Numba has no
+layer at a time (`kernels/lanes.py`), followed by what their sums go through. PyPI's Numba has no
 vector tanh, so tanh is a rational function (odd, degree 13 over 6, error below 1e-6 in float32,
 the form that Eigen uses), which the compiler vectorises.
 """
@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from cutis.inverse.dense_lanes import LANES, OUTPUTS, dense_block
 from cutis.kernels.compiling import compiled, on_all_cores
+from cutis.kernels.lanes import LANES, OUTPUTS, dense_block
 
 TILE = 64
 """Texels that go through the layers together."""

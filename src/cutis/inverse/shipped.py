@@ -12,6 +12,8 @@ from dataclasses import asdict
 from importlib import resources
 from pathlib import Path
 
+import numpy as np
+
 from cutis.albedo.colour_table import colour_table
 from cutis.errors import CutisError
 from cutis.inverse.device import torch_network
@@ -19,7 +21,7 @@ from cutis.inverse.lookup import SHAPES, lookup_tensor
 from cutis.inverse.model import Conversion, Model, content_digest
 from cutis.inverse.network import Autoencoder, Perceptron, load_weights
 from cutis.inverse.prior import SkinPrior, load_prior
-from cutis.optics import ALIAGA2022, MEASURED2026, Tissue
+from cutis.optics import ALIAGA2022, MEASURED2026, Tissue, axes
 
 EXACT, MEASURED = "aliaga2022-exact", "measured2026"
 NETWORKS = ("aliaga2022",)
@@ -116,23 +118,25 @@ def networks(name: str) -> Autoencoder:
 
 
 def _from_networks(name: str, pair: Autoencoder, device: str, digest: str) -> Model:
-    from cutis.inverse.units_kernel import from_units
+    from cutis.kernels.warp_kernel import to_coordinates
 
+    ranges = axes().astype(np.float32)
     encoder: Conversion = pair.encoder
     decoder: Conversion = pair.decoder
     if device != "cpu":
         encoder, decoder = (torch_network(n, device) for n in (pair.encoder, pair.decoder))
     return Model(
-        name, _in_units(encoder), lambda skins: decoder(from_units(skins)), ALIAGA2022,
+        name, _in_units(encoder), lambda skins: decoder(to_coordinates(skins, ranges)), ALIAGA2022,
         digest=digest,
     )  # fmt: skip
 
 
 def _in_units(encode: Conversion) -> Conversion:
     """What gives network coordinates, giving parameters in their units."""
-    from cutis.inverse.units_kernel import to_units
+    from cutis.kernels.warp_kernel import to_units
 
-    return lambda colours: to_units(encode(colours))
+    ranges = axes().astype(np.float32)
+    return lambda colours: to_units(encode(colours), ranges)
 
 
 def _digest(tissue: Tissue, *weights: str, shape: tuple[int, ...] = ()) -> str:

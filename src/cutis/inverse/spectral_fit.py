@@ -32,6 +32,7 @@ from cutis.optics import (
     WAVELENGTHS,
     Parameter,
     Tissue,
+    axes,
     with_rare_chromophores,
 )
 
@@ -171,12 +172,9 @@ class SpectralFitter:
         costs = np.empty(len(y))
         starts, held = self.starts(y, w), np.ones(len(every), dtype=np.bool_)
         held[list(self.space.places)] = ~self.free
-        power = np.array([p.root for p in every], dtype=np.float32)
-        low = np.array([p.low ** (1 / p.root) for p in every], dtype=np.float32)
-        high = np.array([p.high ** (1 / p.root) for p in every], dtype=np.float32)
-        axes, model = (low, high - low, power), self.sampled.model
+        ranges = axes(every, dict(self.space.tissue.fixed)).astype(np.float32)
         fit_kernel(
-            len(y), y, w, starts, held, ITERATIONS, axes, self.space.slots, model, best, matrices,
+            len(y), y, w, starts, held, ITERATIONS, ranges, self.sampled.model, best, matrices,
             costs,
         )  # fmt: skip
         places = list(self.space.places)

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from cutis.optics import NAMES, PARAMETERS, from_coordinates
+from cutis.optics import NAMES, PARAMETERS, axes, from_coordinates
 
 BINS = 1 << 16
 """Bins over the network coordinate of a map: a percentile is found to 1/131072 of its
@@ -18,13 +18,10 @@ def coordinates(
     maps: Sequence[NDArray[np.float32]], where: NDArray[np.bool_]
 ) -> NDArray[np.float32]:
     """Network coordinates (h, W, 5) of the five maps (h, W) where `where` is True, else 0."""
-    from cutis.maps.statistics_kernel import coordinates as fill
+    from cutis.kernels.statistics_kernel import coordinates as fill
 
-    root = np.array([p.root for p in PARAMETERS])
-    low = np.array([p.low ** (1 / p.root) for p in PARAMETERS])
-    span = np.array([p.high ** (1 / p.root) for p in PARAMETERS]) - low
     out = np.empty((*where.shape, 5), np.float32)
-    fill(len(where), tuple(maps), where, root, low, span, out)
+    fill(len(where), tuple(maps), where, axes(), out)
     return out
 
 
@@ -72,7 +69,7 @@ class MapStatistics:
 
     def add(self, u: NDArray[np.float32], where: NDArray[np.bool_]) -> None:
         """Counts coordinates (h, W, 5) where `where` (h, W) is True."""
-        from cutis.maps.statistics_kernel import count
+        from cutis.kernels.statistics_kernel import count
 
         count(u, where, self.counts)
 

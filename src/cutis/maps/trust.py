@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from cutis.inverse.model import Model
 from cutis.maps.statistics import BINS, quantile
-from cutis.optics import NAMES, PARAMETERS, Parameter
+from cutis.optics import NAMES, PARAMETERS, Parameter, axes
 
 SIGMA = ".sigma"
 """After the name of a map in EXR channels: its standard deviation."""
@@ -55,7 +55,7 @@ class TrustStatistics:
         inside: NDArray[np.bool_],
     ) -> None:
         """The next rows (h, W): σ by name, confidence, coordinates (h, W, 5), where the mask is."""
-        from cutis.maps.statistics_kernel import count, count_spread
+        from cutis.kernels.statistics_kernel import count, count_spread
 
         if not sigmas:
             return
@@ -65,11 +65,7 @@ class TrustStatistics:
         self._unsure += int(np.count_nonzero(inside)) - int(np.count_nonzero(sure))
         nothing = np.zeros(inside.shape, np.float32)
         spreads = tuple(np.asarray(sigmas.get(name, nothing)) for name in NAMES)
-        root = np.array([p.root for p in PARAMETERS])
-        low = np.array([p.low ** (1 / p.root) for p in PARAMETERS])
-        span = np.array([p.high ** (1 / p.root) for p in PARAMETERS]) - low
-        width = np.array([p.high - p.low for p in PARAMETERS])
-        count_spread(spreads, u, sure, root, low, span, width, self._even, self._share)
+        count_spread(spreads, u, sure, axes(), self._even, self._share)
         count(u, sure, self._values)
 
     def low_confidence(self) -> float | None:

@@ -1,5 +1,6 @@
 """What skin is made of: chromophores, tissue layers, parameters."""
 
+from cutis.optics.absorbers import Absorber
 from cutis.optics.parameters import (
     EPIDERMAL_BLOOD,
     NAMES,
@@ -8,6 +9,7 @@ from cutis.optics.parameters import (
     RARE_NAMES,
     TYPICAL,
     Parameter,
+    axes,
     from_coordinates,
     parameter,
     skin,
@@ -36,8 +38,10 @@ __all__ = [
     "TISSUES",
     "TYPICAL",
     "WAVELENGTHS",
+    "Absorber",
     "Parameter",
     "Tissue",
+    "axes",
     "from_coordinates",
     "parameter",
     "skin",

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutis.errors import CutisError
+from cutis.kernels import warp
 
 
 @dataclass(frozen=True)
@@ -26,23 +27,23 @@ class Parameter:
     high: float
     root: int
 
+    def __post_init__(self) -> None:
+        if self.root not in (1, 2, 3, 4) or not 0 <= self.low < self.high < np.inf:
+            raise CutisError(
+                f"parameter {self.name}: its range must rise from 0 or more, its root be 1 to 4"
+            )
+
     def to_coordinate(self, value: ArrayLike) -> NDArray[np.floating]:
         """Parameter in its unit → coordinate u ∈ [0, 1]; any shape, not clamped."""
-        low, high = self.low ** (1 / self.root), self.high ** (1 / self.root)
-        return (np.asarray(value) ** (1 / self.root) - low) / (high - low)
+        return warp.to_coordinate(value, self.low, self.high, self.root)
 
     def from_coordinate(self, coordinate: ArrayLike) -> NDArray[np.floating]:
         """Coordinate u ∈ [0, 1] → parameter in its unit; any shape, clamped to the range."""
-        low, high = self.low ** (1 / self.root), self.high ** (1 / self.root)
-        u = np.clip(coordinate, 0, 1)  # before an even power, which would hide a negative root
-        value = (low + u * (high - low)) ** self.root
-        return np.clip(value, self.low, self.high)
+        return warp.from_coordinate(coordinate, self.low, self.high, self.root)
 
     def slope(self, coordinate: ArrayLike) -> NDArray[np.floating]:
         """∂parameter/∂u, in its unit, at coordinates u ∈ [0, 1]; any shape."""
-        low, high = self.low ** (1 / self.root), self.high ** (1 / self.root)
-        root = low + np.asarray(coordinate) * (high - low)
-        return self.root * root ** (self.root - 1) * (high - low)
+        return warp.slope(coordinate, self.low, self.high, self.root)
 
     def check(self, value: float) -> float:
         """Returns `value`, or raises CutisError when it is not a number inside the range."""
@@ -108,13 +109,27 @@ def from_coordinates(coordinates: ArrayLike) -> NDArray[np.floating]:
     return np.stack([p.from_coordinate(u[..., i]) for i, p in enumerate(PARAMETERS)], axis=-1)
 
 
+def axes(
+    parameters: Sequence[Parameter] = PARAMETERS, held: Mapping[str, float] | None = None
+) -> NDArray[np.float64]:
+    """(5, p) the numbers of their coordinates, as `kernels.warp.axes` has them.
+
+    A parameter that is `held` has no span, and stays at its value.
+    """
+    fixed = dict(held or {})
+    ends = [(fixed.get(p.name, p.low), fixed.get(p.name, p.high), p.root) for p in parameters]
+    low, high, root = zip(*ends, strict=True)
+    return warp.axes(low, high, root)
+
+
 def skin(
     values: Mapping[str, float], parameters: Sequence[Parameter] = PARAMETERS
 ) -> NDArray[np.float64]:
     """(p,) parameters of one skin from a mapping; those missing are TYPICAL or 0, all checked."""
+    names = [p.name for p in parameters]
     for name in values:
-        if parameter(name) not in parameters:
-            raise CutisError(f"{name} is not a parameter of this tissue")
+        if name not in names:
+            raise CutisError(f"{parameter(name).name} is not a parameter of this tissue")
     return np.array(
         [p.check(float(values.get(p.name, TYPICAL.get(p.name, 0.0)))) for p in parameters]
     )

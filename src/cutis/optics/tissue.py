@@ -4,13 +4,26 @@ A tissue is an immutable value that holds every constant, so that a published mo
 variant and a user's own differ in data, not in code (`dataclasses.replace`).
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutis.errors import CutisError
+from cutis.kernels.mixture import TIMES, WITHOUT
 from cutis.optics import chromophores
+from cutis.optics.absorbers import (
+    BLOOD,
+    BLOOD_ABOVE,
+    BLOOD_WITH_BROWN,
+    DISSOLVED,
+    LAYERS,
+    MELANIN,
+    REST,
+    Absorber,
+)
 from cutis.optics.parameters import EPIDERMAL_BLOOD, NAMES, PARAMETERS, RARE, Parameter, parameter
 
 WAVELENGTHS = np.arange(380.0, 781.0, 10.0)
@@ -18,11 +31,6 @@ WAVELENGTHS = np.arange(380.0, 781.0, 10.0)
 WAVELENGTHS.flags.writeable = False
 LARGEST_SHIFT = 30.0
 """nm that bands of a tissue may lie off their tables: from hexane to any lipid, with room."""
-
-CAROTENE_IN_DERMIS = 1 / 3
-"""Concentration of β-carotene in the dermis over that in the epidermis, where it is a parameter: an
-assumption. The epidermis always holds more [vahlquist1982]; a third is the ratio of the constants
-of `ALIAGA2022`, of which the second is per litre of blood."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +47,8 @@ class Tissue:
     instruments that a tissue was calibrated with [berns1988]; the second is what lipids do.
     `rare_chromophores` makes the three of `optics.RARE` parameters too: bilirubin of the dermis as
     a whole, β-carotene of the epidermis with a third of it in the dermis, and methaemoglobin in
-    place of the other haemoglobin.
+    place of the other haemoglobin. `absorbers` are rows of the table of `absorbers.py` on top of
+    those that all tissues have, and `more` the parameters that they bring.
     """
 
     name: str
@@ -71,6 +80,8 @@ class Tissue:
     fixed: tuple[tuple[str, float], ...] = ()
     epidermal_blood: bool = False
     rare_chromophores: bool = False
+    absorbers: tuple[Absorber, ...] = ()
+    more: tuple[Parameter, ...] = ()
 
     def __post_init__(self) -> None:
         if self.dimension not in (2, 3):
@@ -104,6 +115,48 @@ class Tissue:
                 )
         fixed = tuple((str(name), parameter(name).check(value)) for name, value in self.fixed)
         object.__setattr__(self, "fixed", fixed)
+        # what comes from a file has mappings
+        rows = (a if isinstance(a, Absorber) else Absorber(**a) for a in self.absorbers)
+        object.__setattr__(self, "absorbers", tuple(rows))
+        more = (p if isinstance(p, Parameter) else Parameter(**p) for p in self.more)
+        object.__setattr__(self, "more", tuple(more))
+        self._check_table()
+
+    def _check_table(self) -> None:
+        names = [p.name for p in self.every_parameter]
+        for name in names:
+            if names.count(name) > 1:
+                raise CutisError(f"tissue {self.name}: two parameters are called {name}")
+        for absorber in self.absorbers:
+            for name in absorber.parameters:
+                if name not in names:
+                    raise CutisError(
+                        f"tissue {self.name}: {absorber.substance} depends on {name!r}, which is "
+                        f"no parameter of it; add it to `more`, or take one of {', '.join(names)}"
+                    )
+
+    def check(self) -> None:
+        """Raises CutisError, naming what is wrong, unless light can move in it at WAVELENGTHS."""
+        lam = WAVELENGTHS
+        for layer in LAYERS:
+            parts = {a.substance: a.absorption(self, lam) for a in self.table(layer)}
+            for substance, mu in {**parts, "the rest": REST[layer](self, lam)}.items():
+                bad = ~(np.isfinite(mu) & (mu >= 0))
+                if bad.any():
+                    raise CutisError(
+                        f"tissue {self.name}: the absorption of {substance} in the {layer} is "
+                        f"negative or not finite at {lam[bad][0]:g} nm"
+                    )
+        for layer, share in zip(LAYERS, (1.0, self.dermis_scattering), strict=True):
+            mu = share * self.reduced_scattering(lam)
+            bad = ~(np.isfinite(mu) & (mu > 0))
+            if bad.any():
+                raise CutisError(
+                    f"tissue {self.name}: the {layer} does not scatter at {lam[bad][0]:g} nm; "
+                    "scattering must be above 0 and finite"
+                )
+        if not np.all(np.abs(self.anisotropy(lam)) < 1):
+            raise CutisError(f"tissue {self.name}: its anisotropy must lie inside (-1, 1)")
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -114,9 +167,53 @@ class Tissue:
     @property
     def every_parameter(self) -> tuple[Parameter, ...]:
         """The same with those that `fixed` holds."""
-        if self.rare_chromophores:
-            return (*PARAMETERS, *RARE)
-        return (*PARAMETERS, EPIDERMAL_BLOOD) if self.epidermal_blood else PARAMETERS
+        rare = RARE if self.rare_chromophores else ()
+        above = (EPIDERMAL_BLOOD,) if self.epidermal_blood else ()
+        return (*PARAMETERS, *above, *rare, *self.more)
+
+    def table(self, layer: str) -> tuple[Absorber, ...]:
+        """What absorbs in a layer besides the rest of it."""
+        return tuple(a for a in self._table if a.layer == layer)
+
+    @cached_property
+    def _table(self) -> tuple[Absorber, ...]:
+        above = BLOOD_ABOVE if self.epidermal_blood else ()
+        below = (*BLOOD_WITH_BROWN, *DISSOLVED) if self.rare_chromophores else BLOOD
+        return (*MELANIN, *above, *below, *self.absorbers)
+
+    def mixture(
+        self, wavelength: ArrayLike
+    ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+        """The table as matrices, for `kernels.mixture`: recipe (c, p) and what they absorb.
+
+        The recipe, in every parameter, has the epidermis' absorbers first. Spectra (1 + c, n) of
+        epidermis and of dermis begin with the rest; amounts are in them.
+        """
+        lam = np.atleast_1d(np.asarray(wavelength, dtype=np.float64))
+        names = [p.name for p in self.every_parameter]
+        recipe, pure = [], []
+        for layer in LAYERS:
+            rest = REST[layer](self, lam)
+            rows = [rest]
+            for a in self.table(layer):
+                rows.append(a.amount * (a.absorption(self, lam) - (rest if a.room else 0.0)))
+                recipe.append([TIMES * (n in a.times) + WITHOUT * (n in a.without) for n in names])
+            pure.append(np.array(rows))
+        return np.array(recipe, dtype=np.int64), pure[0], pure[1]
+
+    def absorption(
+        self, layer: str, values: Mapping[str, ArrayLike], wavelength: ArrayLike
+    ) -> NDArray[np.float64]:
+        """μa of a layer, cm⁻¹; parameters (...) by name, result (..., wavelengths).
+
+        Parameters that `fixed` holds may be left out; others that are left out are 0.
+        """
+        lam = np.atleast_1d(wavelength)
+        known = {
+            p.name: np.asarray(values.get(p.name, dict(self.fixed).get(p.name, 0.0)), float)
+            for p in self.every_parameter
+        }
+        return _filled(self, self.table(layer), REST[layer](self, lam), known, lam)
 
     @property
     def outer_index(self) -> float:
@@ -165,12 +262,11 @@ class Tissue:
 
         `carotene` is what a rare chromophore adds.
         """
-        v_m = np.asarray(melanin, dtype=np.float64)[..., None]
-        phi = np.asarray(eumelanin, dtype=np.float64)[..., None]
+        given = {"melanin": melanin, "eumelanin": eumelanin, "carotene": carotene}
+        values = {name: np.asarray(value, dtype=np.float64) for name, value in given.items()}
+        table = (*MELANIN, *(a for a in DISSOLVED if a.layer == "epidermis"))
         lam = np.atleast_1d(wavelength)
-        pigment = phi * self.eumelanin(lam) + (1 - phi) * self.pheomelanin(lam)
-        plain = v_m * pigment + (1 - v_m) * self.epidermis_background(lam)
-        return plain + np.asarray(carotene)[..., None] * self.added_carotene(lam)
+        return _filled(self, table, self.epidermis_background(lam), values, lam)
 
     def dermis_absorption(
         self,
@@ -185,18 +281,17 @@ class Tissue:
 
         The last three are what rare chromophores add, `carotene` being that of the epidermis.
         """
-        v_b = np.asarray(blood, dtype=np.float64)[..., None]
-        oxy = np.asarray(oxygenation, dtype=np.float64)[..., None]
+        given = {
+            "blood": blood,
+            "oxygenation": oxygenation,
+            "bilirubin": bilirubin,
+            "carotene": carotene,
+            "methaemoglobin": methaemoglobin,
+        }
+        values = {name: np.asarray(value, dtype=np.float64) for name, value in given.items()}
+        table = (*BLOOD_WITH_BROWN, *(a for a in DISSOLVED if a.layer == "dermis"))
         lam = np.atleast_1d(wavelength)
-        deoxygenated, oxygenated = self.whole_blood(lam)
-        whole = oxy * oxygenated + (1 - oxy) * deoxygenated
-        met = np.asarray(methaemoglobin, dtype=np.float64)[..., None]
-        if np.any(met):
-            whole = (1 - met) * whole + met * self.brown_blood(lam)
-        plain = v_b * whole + (1 - v_b) * self.baseline(lam)
-        yellow = np.asarray(bilirubin)[..., None] * self.added_bilirubin(lam)
-        orange = np.asarray(carotene)[..., None] * self.added_carotene(lam)
-        return plain + yellow + CAROTENE_IN_DERMIS * orange
+        return _filled(self, table, self.baseline(lam), values, lam)
 
     def epidermis_background(self, wavelength: ArrayLike) -> NDArray[np.float64]:
         """μa of epidermis without melanin, cm⁻¹: β-carotene and baseline."""
@@ -243,6 +338,27 @@ class Tissue:
             return absorption
         depth = np.maximum(2e-4 * self.vessel_radius * absorption, 1e-12)
         return absorption * -np.expm1(-depth) / depth
+
+
+def _filled(
+    tissue: Tissue,
+    table: tuple[Absorber, ...],
+    rest: NDArray[np.float64],
+    values: dict[str, NDArray[np.float64]],
+    wavelength: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """μa (..., n) of a layer that holds a table in the shares of `values`, and rest (n,)."""
+    total: NDArray[np.float64] = np.zeros(1)
+    room: NDArray[np.float64] = np.zeros(())
+    for absorber in table:
+        share = absorber.share(values)
+        if not np.any(share):  # some tables end where nobody asks for what they hold
+            room = room + 0.0 * share
+            continue
+        total = total + share[..., None] * absorber.absorption(tissue, wavelength)
+        if absorber.room:
+            room = room + share
+    return total + (1 - room)[..., None] * rest
 
 
 ALIAGA2022 = Tissue(name="aliaga2022")

@@ -36,7 +36,7 @@ class NearestColour:
 
     def __call__(self, colours: NDArray[np.float32]) -> NDArray[np.int64]:
         """(n, 3) finite colours → (n,) index of the nearest point."""
-        from cutis.inverse.nearest_kernel import nearest_kernel
+        from cutis.kernels.nearest_kernel import nearest_kernel
 
         points, index, low, high, starts = self._tree
         out = np.empty(len(colours), dtype=np.int64)
