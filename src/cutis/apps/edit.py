@@ -55,6 +55,7 @@ def edit(
     from cutis.apps.console import bar, out
     from cutis.errors import CutisError
     from cutis.jobs.edit import EditJob
+    from cutis.report.words import percent
 
     if not changes and illuminant is None and not edited_before(maps):
         raise CutisError(
@@ -77,7 +78,7 @@ def edit(
         for note in one.notes:
             out.say(note)
         for text, clamped in zip(one.edits, one.clamped, strict=True):
-            share = f" ({100 * clamped / max(one.inside, 1):.0f} % of the mask)"
+            share = f" ({percent(clamped / max(one.inside, 1))} of the mask)"
             out.say(text + (f", {clamped:,} texels clamped to range{share}" if clamped else ""))
         if illuminant is not None:
             out.say(f"shown under {illuminant}")

@@ -346,6 +346,14 @@ class SkinMaps(abc.ABC):
         """Writes maps and mask as channels of one EXR; `dtype` float (exact) or half."""
         save_maps(self, path, dtype)
 
+    def _repr_html_(self) -> str:
+        """A thumbnail of the albedo, for notebooks."""
+        from cutis.textures.thumbnail import LONGEST, picture_html
+
+        step = max(1, -(-max(self.shape) // LONGEST))
+        few = [self.rows(slice(row, row + 1)).albedo() for row in range(0, self.shape[0], step)]
+        return picture_html(np.concatenate(few), repr(self)) if few else repr(self)
+
     def __repr__(self) -> str:
         height, width = self.shape
         cover = float(np.mean(self.mask > 0)) if self.mask.size else 0.0
