@@ -10,24 +10,41 @@ CORE := $(VENV)/.core
 FULL := $(VENV)/.full
 BLENDER := $(VENV)/cutis-blender/cutis-blender
 INSTALL := $(BIN)/python -m pip --disable-pip-version-check install --quiet -c constraints.txt
+PYTEST := $(BIN)/python -m pytest --quiet
+# Worker processes of the tests; they share the cores among them.
+WORKERS ?= auto
+PARALLEL := --numprocesses $(WORKERS) --dist loadfile
+# Rounds of new cases, and damaged files, of `make fuzz`.
+ROUNDS ?= 5
+FILES ?= 10000
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help setup blender demo test lint types docs format clean
+.PHONY: help setup setup-render demo quick test test-long fuzz lint types docs docs-check format clean
 
 help: ## list the targets
-	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | expand -t 10
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | expand -t 14
 
-setup: $(FULL) ## make .venv with everything that tests, docs, training and renders need
-	@$(MAKE) --no-print-directory blender || echo 'without Blender: tests that render are skipped'
+setup: $(FULL) ## make .venv with everything that tests, docs and training need
 
-blender: $(BLENDER) ## install Blender as a module, in .venv/cutis-blender
+setup-render: $(BLENDER) ## also install Blender as a module, in .venv/cutis-blender (400 MB)
 
 demo: $(CORE) ## run the demonstration on the example capture, into demo/
 	$(BIN)/cutis demo -o demo
 
-test: setup lint types docs ## lint, types, docs and all tests
-	$(BIN)/python -m pytest
+quick: lint types ## within a minute: style, types, and tests of what your change can reach
+	$(PYTEST) $(PARALLEL) -m 'not slow and not long' --quick 60
+
+test: setup lint types docs ## what has to pass: style, types, docs and tests
+	$(PYTEST) $(PARALLEL) -m 'not long'
+
+test-long: setup ## the tests that `make test` leaves out
+	$(PYTEST) $(PARALLEL) -m long
+
+fuzz: setup ## property tests on ROUNDS of new cases, then FILES damaged files
+	for round in $$(seq $(ROUNDS)); do \
+	  CUTIS_PROPERTIES=new $(PYTEST) $(PARALLEL) -m property || exit; done
+	$(BIN)/python -m studies.fuzz_textures --count $(FILES) --seed $$(date +%s)
 
 lint: $(FULL) ## code style
 	$(BIN)/ruff check .
@@ -38,6 +55,9 @@ types: $(FULL) ## static types
 
 docs: $(FULL) ## build the documentation into site/
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
+
+docs-check: $(FULL) ## name generated files that are older than what made them
+	$(BIN)/python -m studies.generated
 
 format: $(FULL) ## rewrite the code in the project's style
 	$(BIN)/ruff check --fix .

@@ -9,7 +9,7 @@ from rich.progress import track
 from cutis.albedo import albedo_space, uniform
 from cutis.albedo.colour_table import colour_table
 from cutis.colour import delta_e
-from cutis.inverse import load_model
+from cutis.maps import load_model
 from cutis.optics import ALIAGA2022, TISSUES, WAVELENGTHS, from_coordinates
 from cutis.transport import two_layer_albedo
 from studies.figures.subjects import data_folder, every_face

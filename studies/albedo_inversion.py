@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from cutis.render.inversion import diffuse_albedo, single_scattering_albedo
 from cutis.render.published_fits import chiang2016, kulla_conty2017, wrenninge2017
+from studies.generated import record
 from studies.pages import DOCS, rewrite
 
 ALBEDO = np.linspace(0.01, 0.95, 189)
@@ -42,6 +43,7 @@ def main() -> None:
     axes.legend(fontsize=7, frameon=False)
     target = DOCS / "images" / "subsurface.png"
     figure.savefig(target)
+    record(target)
     print(f"wrote docs/images/{target.name}")
     rewrite("subsurface.md", fits="\n".join(lines))
 

@@ -9,9 +9,11 @@ from rich.progress import track
 
 from cutis.albedo import AlbedoSpace, albedo_space
 from cutis.colour import delta_e
-from cutis.inverse import calibrate, load_model
+from cutis.inverse import calibrate
 from cutis.inverse.baked import Solver, exact_inverse, probable_skins
-from cutis.inverse.models import EXACT, MEASURED, Model, shipped_encoder, shipped_prior
+from cutis.inverse.model import Model
+from cutis.inverse.shipped import EXACT, MEASURED, shipped_encoder, shipped_prior
+from cutis.maps import load_model
 from cutis.optics import from_coordinates
 from studies.figures.subjects import data_folder, every_face
 from studies.pages import rewrite

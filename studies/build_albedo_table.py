@@ -15,6 +15,7 @@ from cutis.albedo import AlbedoSpace
 from cutis.albedo.colour_table import build_colours, save_colours
 from cutis.albedo.spectral_table import SpectralTable, build, save, table_file
 from cutis.optics import TISSUES, Tissue, with_rare_chromophores
+from studies.generated import record
 
 FOLDER = Path(__file__).parents[1] / "src" / "cutis" / "data" / "albedo"
 
@@ -43,6 +44,7 @@ def write(name: str, save_to: Callable[[IO[bytes]], None]) -> None:
         part.replace(FOLDER / name)
     finally:
         part.unlink(missing_ok=True)
+    record(FOLDER / name)
     print(f"wrote {name}, {(FOLDER / name).stat().st_size / 1024:.0f} KiB")
 
 

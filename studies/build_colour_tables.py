@@ -5,6 +5,8 @@ from pathlib import Path
 import colour
 import numpy as np
 
+from studies.generated import record
+
 FOLDER = Path(__file__).parents[1] / "src" / "cutis" / "data" / "colour"
 WAVELENGTHS = np.arange(380, 781, 5)
 ILLUMINANTS = [
@@ -60,6 +62,7 @@ def _write(name: str, header: str, columns: dict[str, np.ndarray], terms: str = 
     for i, lam in enumerate(WAVELENGTHS):
         rows.append(",".join([str(lam), *(repr(float(c[i])) for c in columns.values())]))
     (FOLDER / name).write_text(header + (terms or TERMS) + "\n".join(rows) + "\n", encoding="utf-8")
+    record(FOLDER / name)
 
 
 def main() -> None:

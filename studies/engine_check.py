@@ -2,8 +2,8 @@
 
 Patches of skin tones under light from everywhere, in Cycles (square on, and as a ball, which shows
 all views) and in Mitsuba: what comes back against the albedo asked for, and whether it is shown to
-be within 1 % of it. Needs Blender (`make blender`) and `pip install 'cutis[mitsuba]'`; the Monk
-tones are read from the shared data (CUTIS_SHARED_DATA), and left out where it is absent.
+be within 1 % of it. Needs Blender (`make setup-render`) and `pip install 'cutis[mitsuba]'`; the
+Monk tones are read from the shared data (CUTIS_SHARED_DATA), and left out where it is absent.
 """
 
 import csv

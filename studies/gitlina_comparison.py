@@ -15,7 +15,7 @@ from rich.progress import track
 from cutis.colour import delta_e, ita, reflectance_to_rgb
 from cutis.inverse import explain
 from cutis.optics import ALIAGA2022, GITLINA2020, Tissue
-from cutis.report.numbers import GAMUT_DELTA_E
+from cutis.report.gathering import GAMUT_DELTA_E
 from studies.figures.measured import BANDS, measured_skins
 from studies.figures.subjects import data_folder, every_face
 from studies.pages import rewrite

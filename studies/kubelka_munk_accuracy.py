@@ -17,8 +17,9 @@ from cutis import estimate, read, read_mask
 from cutis.albedo import albedo_space
 from cutis.albedo.kubelka_munk import EPIDERMES, KubelkaMunkSkin
 from cutis.colour import delta_e, is_skin_colour, reflectance_to_rgb
-from cutis.inverse import Model, load_model
+from cutis.inverse import Model
 from cutis.inverse.kubelka_munk import KubelkaMunkInverse
+from cutis.maps import load_model
 from cutis.optics import ALIAGA2022, WAVELENGTHS, Tissue
 from cutis.transport import Layer, stack_balance
 from studies.figures.measured import BANDS, measured_skins

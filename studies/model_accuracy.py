@@ -12,9 +12,9 @@ from rich.progress import track
 from cutis import estimate, read, read_mask
 from cutis.albedo import albedo_space, uniform
 from cutis.colour import delta_e, is_skin_colour
-from cutis.inverse import load_model, tissue_of
+from cutis.maps import load_model
 from cutis.optics import NAMES, to_coordinates
-from cutis.report import numbers as report
+from cutis.report import gathering as report
 from studies.figures.subjects import data_folder
 from studies.pages import rewrite
 
@@ -50,10 +50,12 @@ def closed_loop() -> tuple[str, str]:
         face = read(path)
         mask = None if mask_path is None else read_mask(mask_path, face.shape)
         automatic = {  # the gains are those that suit the tissue
-            tissue_of(model): estimate(face, mask, white="auto", model=model).calibration.gains
+            load_model(model).tissue: estimate(
+                face, mask, white="auto", model=model
+            ).calibration.gains
             for model in MODELS[:2]
         }
-        runs = [(automatic[tissue_of(model)], model) for model in (*MODELS, *TENSORS)]
+        runs = [(automatic[load_model(model).tissue], model) for model in (*MODELS, *TENSORS)]
         runs += [((1.0, 1.0, 1.0), model) for model in MODELS[:2]]
         for gains, model in runs:
             found = report(estimate(face, mask, white=gains, model=model))

@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+from studies.generated import record
+
 DOCS = Path(__file__).parents[1] / "docs"
 
 
@@ -14,4 +16,5 @@ def rewrite(page: str, **tables: str) -> None:
         before, rest = text.split(start)
         text = f"{before}{start}\n\n{table}\n\n{end}" + rest.split(end)[1]
     path.write_text(text, encoding="utf-8")
+    record(*(f"docs/{page}#{name}" for name in tables))
     print(f"wrote docs/{page}")

@@ -16,9 +16,9 @@ from cutis.albedo import AlbedoSpace, albedo_space
 from cutis.albedo.sampled import SampledSpace
 from cutis.colour import is_skin_colour
 from cutis.inverse.prior import SkinPrior
-from cutis.inverse.prior_training import train_prior
 from cutis.optics import MEASURED2026, NAMES, from_coordinates
 from studies.figures.measured import ArchivedSkins, read_skins
+from studies.prior_training import train_prior
 
 ROOT = Path(__file__).parents[1]
 FREEDOMS = (

@@ -2,7 +2,7 @@
 
 Six skins, light to dark, as they are and with six edits of blood and melanin, under three lights:
 126 pictures. A run that was stopped goes on where it was (pictures are kept in build/renders).
-Needs Blender: `make blender`.
+Needs Blender: `make setup-render`.
 """
 
 import argparse
@@ -16,14 +16,15 @@ from rich.progress import Progress
 
 import cutis
 from cutis.colour import lab
-from cutis.jobs.render import Order, render_pictures
+from cutis.jobs.render import RenderJob
+from cutis.jobs.render import Subject as Shown
 from cutis.maps.presets import PRESETS
-from cutis.render.blender import find_blender
 from cutis.render.frames import Frame
 from cutis.render.heads import Head, head
 from cutis.render.scene import Scene
 from cutis.textures import read_texture
 from studies.figures.edits import DARK, LABELS, LIGHT
+from studies.generated import record
 from studies.pages import rewrite
 
 ROOT = Path(__file__).parents[1]
@@ -91,7 +92,7 @@ def main() -> None:
     options = parser.parse_args()
     for folder in (WORK, PAGE):
         folder.mkdir(parents=True, exist_ok=True)
-    blender, cast = find_blender(), subjects()
+    cast = subjects()
     for subject in cast:
         if not subject.maps.is_file():
             subject.estimate()
@@ -114,11 +115,8 @@ def main() -> None:
                     Frame(k, edits=PRESETS[name]) for k, name in enumerate(subject.edits, 2)
                 )]  # fmt: skip
                 stem = WORK / f"{subject.albedo}-{light}"
-                order = Order(
-                    subject.maps, stem.with_suffix(".png"), scene, frames=tuple(frames),
-                    credits=(subject.head.credit,),
-                )  # fmt: skip
-                render_pictures(order, blender, lambda *_: None)
+                shown = Shown(subject.maps, scene)
+                RenderJob(shown, stem.with_suffix(".png"), tuple(frames)).run()
                 files = [Path(f"{stem}.{frame.number:04d}.png") for frame in frames]
                 names = [LABELS[name] for name in subject.edits]
                 rows.append(files)
@@ -129,6 +127,7 @@ def main() -> None:
                 table.append(f"| {light} | {subject.label} | {cells} |")
                 bar.advance(task)
             sheet(rows, labels).save(PAGE / f"grid-{light}.jpg", quality=88)
+            record(PAGE / f"grid-{light}.jpg")
     rewrite("render.md", grid="\n".join(table))
 
 

@@ -10,10 +10,11 @@ from pathlib import Path
 from rich.progress import Progress
 
 from cutis.inverse.prior import save_prior
-from cutis.inverse.prior_training import train_prior
 from cutis.optics import MEASURED2026
 from cutis.textures import replacing
 from studies.figures.measured import read_skins
+from studies.generated import record
+from studies.prior_training import train_prior
 
 ROOT = Path(__file__).parents[1]
 TARGET = ROOT / "src" / "cutis" / "data" / "weights" / "measured2026-prior.npz"
@@ -31,6 +32,7 @@ def main() -> None:
         )
     with replacing(TARGET) as partial:
         save_prior(prior, partial)
+    record(TARGET)
     print(f"wrote {TARGET.name}, {TARGET.stat().st_size} bytes")
 
 

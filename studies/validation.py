@@ -14,8 +14,9 @@ from cutis.optics import ALIAGA2022, MEASURED2026, NAMES
 from studies.figures.measured import BANDS, GROUPS, NIST, ORIGINS, read_skins
 from studies.figures.section import table
 from studies.figures.subjects import data_folder
+from studies.generated import record
 from studies.pages import DOCS, rewrite
-from studies.validation_plots import BAND_NAMES, draw
+from studies.validation_plots import BAND_NAMES, PLOTS, draw
 from studies.validation_study import FOLDS, LEARNED, LIGHTS, PER_BAND, Study, study
 
 Array = np.ndarray
@@ -240,6 +241,7 @@ def main() -> None:
         raise SystemExit("the larger data is absent; name its folder")
     found = study(read_skins(data), given.per_band)
     draw(found, DOCS / "images")
+    record(*(DOCS / "images" / f"validation-{name}.png" for name in PLOTS))
     rewrite("validation.md", **tables(found))
 
 

@@ -11,12 +11,13 @@ from cutis.albedo import albedo_space
 from cutis.albedo.sampled import SampledSpace
 from cutis.colour import delta_e, reflectance_to_rgb, spectrum_to_rgb, upsample
 from cutis.colour.observer import wavelengths
-from cutis.inverse import SpectralFitter, load_model
-from cutis.inverse.models import DEFAULT, EXACT
+from cutis.inverse import SpectralFitter
 from cutis.inverse.prior import unit_slopes
-from cutis.inverse.prior_training import train_prior
+from cutis.inverse.shipped import EXACT
+from cutis.maps import DEFAULT, load_model
 from cutis.optics import ALIAGA2022, MEASURED2026, Tissue, from_coordinates, to_coordinates
 from studies.figures.measured import BANDS, NIST, ArchivedSkins
+from studies.prior_training import train_prior
 
 Array = np.ndarray
 TISSUES = (ALIAGA2022, MEASURED2026)

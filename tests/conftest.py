@@ -8,7 +8,19 @@ import sys
 import time
 from pathlib import Path
 
+import hypothesis
 import pytest
+
+# Property tests draw the same cases every time; `make fuzz` draws new ones, and says how to see a
+# failure again.
+hypothesis.settings.register_profile("same", derandomize=True, database=None, deadline=None)
+hypothesis.settings.register_profile("new", deadline=None, print_blob=True)
+hypothesis.settings.load_profile(os.environ.get("CUTIS_PROPERTIES", "same"))
+
+# Workers of one run share the cores, so that their kernels do not wait for each other.
+WORKERS = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
+if WORKERS > 1:
+    os.environ.setdefault("CUTIS_THREADS", str(max(1, (os.cpu_count() or 1) // WORKERS)))
 
 # Before NumPy loads: on small matrices the threads of its BLAS wait for each other in a loop.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -27,10 +39,22 @@ def _skip_without_shared_data() -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Whatever uses the fixture is `shared` too, so that `-m "not shared"` leaves it out."""
+    """Marks what can be seen: `shared` data that is used, and `property` tests."""
     for item in items:
         if "shared_data" in getattr(item, "fixturenames", ()):
             item.add_marker(pytest.mark.shared)
+        if hypothesis.is_hypothesis_test(getattr(item, "obj", None)):
+            item.add_marker(pytest.mark.property)
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Says last that nothing was rendered, where that is so."""
+    skipped = terminalreporter.stats.get("skipped", [])
+    count = sum("make setup-render" in str(report.longrepr) for report in skipped)
+    if count:
+        terminalreporter.write_line(
+            f"{count} tests that render were skipped: `make setup-render` installs Blender"
+        )
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
@@ -56,7 +80,7 @@ def blender():
     except CutisError as error:
         if os.environ.get("BLENDER"):
             raise
-        pytest.skip(f"{error} (or `make blender`)")
+        pytest.skip(f"{error} (or `make setup-render`)")
 
 
 @pytest.fixture(scope="session")
@@ -110,7 +134,8 @@ def trusting(monkeypatch):
 
     import numpy as np
 
-    from cutis.inverse import models
+    from cutis.inverse import registry
+    from cutis.maps import DEFAULT
     from cutis.optics import PARAMETERS
 
     width = np.array([p.high - p.low for p in PARAMETERS], dtype=np.float32)
@@ -119,10 +144,10 @@ def trusting(monkeypatch):
         sigma = width * np.float32([0.004, 0.005, 0.1, 0.25, 0.3]) * (0.5 + rgb[:, 1:2])
         return np.concatenate([sigma, (rgb[:, :1] > 0.6).astype(np.float32)], axis=1)
 
-    knowing = replace(models.load_model(), to_trust=to_trust, prior_sigma=(0.2,) * 5)
-    real = models._load
+    knowing = replace(registry.load_model(DEFAULT), to_trust=to_trust, prior_sigma=(0.2,) * 5)
+    real = registry._ours
     monkeypatch.setattr(
-        models, "_load", lambda name, how: knowing if name == knowing.name else real(name, how)
+        registry, "_ours", lambda name, how: knowing if name == knowing.name else real(name, how)
     )
     return knowing
 
@@ -241,13 +266,12 @@ def process():
 @pytest.fixture(scope="session")
 def estimated(write_face, face_mask, tmp_path_factory) -> Path:
     """out/ of `cutis estimate face.png`, the capture beside it; not to be written to."""
-    from cutis.jobs.estimate import Settings, Task, calibrated, estimate_file
+    from cutis.jobs.estimate import CaptureFiles, EstimateJob
 
     folder = tmp_path_factory.mktemp("estimated")
     face = write_face(folder)
     out = folder / "out"
-    task = Task(face, None, out, Settings())
-    estimate_file(task, calibrated([task], lambda *_: None), lambda *_: None)
+    EstimateJob((CaptureFiles(face),), out).run()
     assert json.loads((out / "face.report.json").read_text("utf-8"))
     return out
 

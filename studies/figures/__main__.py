@@ -31,6 +31,8 @@ def figures(
     from cutis.apps.console import out, steps
     from cutis.errors import CutisError
     from studies.figures import FIGURES, cast, write_page
+    from studies.generated import record
+    from studies.pages import DOCS
 
     unknown = [name for name in only or [] if name not in FIGURES]
     if unknown:
@@ -44,6 +46,8 @@ def figures(
             progress.step(name)
             sections.append(FIGURES[name](players))
     page = write_page(sections, output)
+    if output.resolve() == DOCS and not only:
+        record(page.resolve(), *sorted((DOCS / "reproduction").glob("*.jpg")))
     if not quiet:
         if players.data is None:
             out.print("the larger data is not at hand: drawn with the bundled capture alone")

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from cutis.colour import delta_e, ita, reflectance_to_rgb
 from cutis.inverse import explain
-from cutis.inverse.models import EXACT
+from cutis.inverse.shipped import EXACT
 from cutis.optics import ALIAGA2022, GITLINA2020, PARAMETERS
 from cutis.report.appearance import COLOUR_MAPS, displayed
 from studies.figures.layout import Picture, grid, magnified

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cutis.inverse.prior_training import MeasuredSkins
+from studies.prior_training import MeasuredSkins
 
 BANDS = np.arange(400.0, 701.0, 10.0)
 """nm, what both archives cover."""

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from cutis.inverse.models import EXACT
+from cutis.inverse.shipped import EXACT
 from cutis.maps import presets
 from cutis.report.appearance import displayed
 from studies.figures.layout import grid

@@ -3,7 +3,7 @@
 import numpy as np
 
 from cutis.colour import delta_e
-from cutis.inverse.models import EXACT
+from cutis.inverse.shipped import EXACT
 from cutis.report.appearance import displayed
 from studies.figures.layout import grid, magnified
 from studies.figures.section import Section, table

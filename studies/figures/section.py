@@ -2,15 +2,17 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from importlib import resources
+from pathlib import Path
 from typing import Any
+
+WORDS = Path(__file__).parent / "words"
 
 
 @dataclass(frozen=True)
 class Section:
     """A section of the page of reproductions.
 
-    Its words are data/figures/`name`.md: a title, what the paper shows in our words, and what comes
+    Its words are words/`name`.md: a title, what the paper shows in our words, and what comes
     out here, with places for `numbers`. `table` holds more of them, `pictures` the drawings
     (matplotlib figures) with their captions, `credits` who made the textures in them.
     """
@@ -23,8 +25,8 @@ class Section:
 
     def words(self) -> tuple[str, str, str]:
         """Title, what the paper says, what was found."""
-        file = resources.files("cutis.data").joinpath("figures", f"{self.name}.md")
-        title, paper, found = file.read_text("utf-8").strip().split("\n\n")
+        text = (WORDS / f"{self.name}.md").read_text("utf-8")
+        title, paper, found = text.strip().split("\n\n")
         return title.removeprefix("# "), paper, found.format(**self.numbers).strip()
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from cutis.colour import is_skin_colour
 from cutis.errors import CutisError
-from cutis.inverse.models import EXACT
+from cutis.inverse.shipped import EXACT
 from cutis.maps import SkinMaps, estimate
 from cutis.textures import read_mask, read_texture
 

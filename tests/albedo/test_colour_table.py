@@ -62,7 +62,7 @@ def test_ends_of_the_ranges_too(tissue):
 
 @pytest.mark.shared
 def test_faces_decode_as_by_the_exact_space(shared_data):
-    from cutis.inverse import load_model
+    from cutis.maps import load_model
     from studies.figures.subjects import every_face
 
     count = 0

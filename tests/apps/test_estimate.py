@@ -7,9 +7,7 @@ import pytest
 from PIL import Image
 
 import cutis as package
-from cutis.inverse import load_model
-from cutis.inverse.models import DEFAULT
-from cutis.maps import estimate, load_maps
+from cutis.maps import DEFAULT, estimate, load_maps, load_model
 from cutis.optics import NAMES
 from cutis.report import report
 from cutis.textures import read_channels
@@ -40,7 +38,10 @@ def test_maps_model_and_report_are_those_of_the_library(estimated):
     found = json.loads((estimated / "face.report.json").read_text("utf-8"))
     said = found.pop("colorspace")
     assert said == "sRGB (assumed, the file says nothing)"
+    files, made_from = found.pop("files"), found.pop("made_from")
     assert found == json.loads(json.dumps(report(skin)))
+    assert all((estimated / name).is_file() for name in files)
+    assert made_from["asked"]["capture"] == "face.png"
 
 
 def test_previews_are_pictures(estimated):

@@ -41,7 +41,7 @@ def test_the_calibration_of_maps_is_taken(maps, cutis, tmp_path):
     from cutis.inverse import Calibration
     from cutis.maps import load_maps, save_maps
 
-    balanced = replace(load_maps(maps), calibration=Calibration((0.8, 1.0, 1.2), "given"))
+    balanced = replace(load_maps(maps), calibrated=Calibration((0.8, 1.0, 1.2), "given"))
     save_maps(balanced, tmp_path / "balanced.skin.exr")
     skins = np.array([[0.6, 0.4, 0.32], [0.7, 0.5, 0.4], [0.4, 0.28, 0.22]])
     found = []

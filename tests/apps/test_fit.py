@@ -8,7 +8,7 @@ import pytest
 
 from cutis.albedo import albedo_space
 from cutis.albedo.sampled import SampledSpace
-from cutis.maps.files import MapsFile
+from cutis.maps.reading import MapsFile
 from cutis.optics import (
     ALIAGA2022,
     MEASURED2026,
@@ -328,3 +328,56 @@ def test_a_colour_texture_is_no_cube(cutis, write_face, tmp_path):
     ended = cutis("fit", write_face(tmp_path, "png8"), "-o", tmp_path / "a.exr")
     assert ended.code == 1
     assert "ENVI" in ended.err
+
+
+@pytest.mark.parametrize("quantity", ["absorbance", "K/S", "transmittance"])
+def test_what_is_no_reflectance_is_refused_unless_forced(
+    cutis, one_line, tmp_path, spectra, quantity
+):
+    r = spectra[:6]
+    values = {"absorbance": -np.log10(r), "K/S": (1 - r) ** 2 / 2 / r, "transmittance": 1 - r}
+    path, out = write_columns(tmp_path / "a.csv", values[quantity]), tmp_path / "out.csv"
+    flags = ("--scale", "100") if quantity == "K/S" else ()
+    message = one_line(cutis("fit", path, "-o", out, *flags))
+    assert "6 of 6 spectra look like no skin (mean RMSE" in message
+    assert "give reflectance, not absorbance or K/S, or keep the result by --force" in message
+    assert not out.exists()
+    kept = cutis("fit", path, "-o", out, "--force", *flags)
+    assert kept.code == 0
+    assert "6 of 6 spectra look like no skin" in kept.err
+    assert out.exists()
+
+
+def test_so_is_a_cube_of_it(cutis, one_line, tmp_path, spectra):
+    np.save(tmp_path / "a.npy", (-np.log10(spectra)).reshape(3, 4, 31).clip(0.01, 1.2))
+    np.savetxt(tmp_path / "a.wavelengths.txt", LAM)
+    out = tmp_path / "a.skin.exr"
+    assert "12 of 12 spectra look like no skin" in one_line(
+        cutis("fit", tmp_path / "a.npy", "-o", out)
+    )
+    assert not out.exists()
+    assert cutis("fit", tmp_path / "a.npy", "-o", out, "--force").code == 0
+    assert out.exists()
+
+
+def test_names_in_what_comes_out_are_no_formulas(cutis, tmp_path, spectra):
+    path = write_columns(tmp_path / "a.csv", spectra[:2])
+    path.write_text(path.read_text().replace("s0", "=1+cmd|x").replace("s1", "-s1"))
+    rows = list(csv.reader(io.StringIO(cutis("fit", path).out)))
+    assert [row[0] for row in rows[1:]] == ["'=1+cmd|x", "'-s1"]
+
+
+def test_a_spectral_library_is_a_table(cutis, one_line, tmp_path, spectra, skins):
+    (tmp_path / "lib.sli").write_bytes(spectra.astype("<f4").tobytes())
+    listed = ", ".join(f"{lam:g}" for lam in LAM)
+    (tmp_path / "lib.hdr").write_text(
+        f"ENVI\nsamples = 31\nlines = {len(spectra)}\nbands = 1\ndata type = 4\n"
+        "file type = ENVI Spectral Library\ninterleave = bsq\nbyte order = 0\n"
+        f"wavelength units = Nanometer\nwavelength = {{{listed}}}\n"
+    )
+    for name in ("lib.sli", "lib.hdr"):
+        ended = cutis("fit", tmp_path / name)
+        assert ended.code == 0
+        assert near(read_skins(ended.out)[1], skins)
+    message = one_line(cutis("fit", tmp_path / "lib.hdr", "-o", tmp_path / "a.skin.exr"))
+    assert "skins of a table are a table" in message

@@ -1,7 +1,6 @@
 """`cutis info` says what is in a file of maps."""
 
-from cutis.inverse.models import DEFAULT
-from cutis.maps import load_maps
+from cutis.maps import DEFAULT, load_maps
 from cutis.optics import NAMES
 
 

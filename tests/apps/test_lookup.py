@@ -1,13 +1,10 @@
 """`--method lookup` in estimate and edit."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 import cutis as package
-from cutis.inverse import load_model
-from cutis.maps import load_maps
+from cutis.maps import load_maps, load_model
 
 
 def test_estimate_by_lookup(write_face, cutis, tmp_path):
@@ -29,7 +26,7 @@ def test_edit_by_lookup_is_quantised(maps, cutis, tmp_path):
     assert (ended.code, ended.err) == (0, "")
     face = package.read(maps.parents[1] / "face.png")
     edited = load_maps(maps).multiply(melanin=3.0)
-    by_tensor = replace(edited, model="lookup").retouch(face)
+    by_tensor = edited.by_model(load_model("lookup")).retouch(face)
     np.testing.assert_array_equal(package.read(out).pixels, by_tensor.pixels)
     assert (by_tensor.pixels != edited.retouch(face).pixels).any()
     inside = edited.mask > 0

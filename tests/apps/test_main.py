@@ -16,7 +16,7 @@ COMMANDS = sorted(command.name for command in app.registered_commands)
 
 def test_the_commands():
     assert COMMANDS == [
-        "bench", "demo", "edit", "estimate", "export", "figures", "fit", "info", "render",
+        "bench", "demo", "edit", "estimate", "export", "fit", "info", "render",
         "simulate", "spectrum", "train",
     ]  # fmt: skip
 

@@ -153,7 +153,7 @@ def test_a_cluster_that_loses_a_worker(scheduler, worker, cutis, tmp_path):
 
 
 def test_a_scheduler_that_does_not_answer(cutis, tmp_path, monkeypatch):
-    monkeypatch.setattr("cutis.jobs.cluster.PATIENCE", 1)
+    monkeypatch.setattr("cutis.jobs.runners.PATIENCE", 1)
     ended = cutis(
         "simulate", "--photons", "10", "--cluster", "tcp://127.0.0.1:9", "-o", tmp_path / "a.csv"
     )
@@ -181,7 +181,7 @@ def test_a_scheduler_that_does_not_answer(cutis, tmp_path, monkeypatch):
     ],
 )
 def test_bad_flags_are_one_line(flags, what, cutis, tmp_path, monkeypatch):
-    monkeypatch.setattr("cutis.jobs.cluster.PATIENCE", 1)
+    monkeypatch.setattr("cutis.jobs.runners.PATIENCE", 1)
     ended = cutis("simulate", *flags, "-o", tmp_path / "a.csv")
     assert ended.code == 1
     assert what in ended.err

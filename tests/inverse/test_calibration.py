@@ -7,8 +7,8 @@ from cutis.albedo import albedo_space, halton
 from cutis.albedo.lights import skin_conversion
 from cutis.colour import delta_e, light_conversion
 from cutis.errors import CutisError
-from cutis.inverse import load_model
 from cutis.inverse.calibration import Calibration, calibrate
+from cutis.maps import load_model
 from cutis.optics import ALIAGA2022, MEASURED2026
 
 CAST = np.array([1.24, 0.98, 0.94])

@@ -7,9 +7,9 @@ import pytest
 
 from cutis.albedo import uniform
 from cutis.errors import CutisError
-from cutis.inverse import load_model, on_device
 from cutis.inverse.device import check_device, torch_network
-from cutis.inverse.models import shipped_encoder
+from cutis.inverse.shipped import shipped_encoder
+from cutis.maps import load_model
 
 
 def has_cuda():
@@ -51,19 +51,19 @@ def test_without_pytorch(monkeypatch):
 def test_unknown_devices_and_models_that_are_tables(monkeypatch):
     with pytest.raises(CutisError, match="unknown device 'gpu'; choose cpu or cuda"):
         load_model("aliaga2022", "gpu")
-    monkeypatch.setattr("cutis.inverse.models.check_device", lambda device: None)
+    monkeypatch.setattr("cutis.inverse.registry.check_device", lambda device: None)
     with pytest.raises(CutisError, match="aliaga2022-exact is a table"):
         load_model("aliaga2022-exact", "cuda")
 
 
-def test_on_device_reaches_models_loaded_inside(monkeypatch):
-    """With a device that PyTorch has everywhere: the block says where networks run."""
+def test_a_model_runs_on_the_device_it_was_loaded_for(monkeypatch):
+    """With a device that PyTorch has everywhere."""
     pytest.importorskip("torch")
     seen = []
-    monkeypatch.setattr("cutis.inverse.models.check_device", lambda device: seen.append(device))
+    monkeypatch.setattr("cutis.inverse.registry.check_device", lambda device: seen.append(device))
     rgb = np.full((5, 3), 0.4, np.float32)
     here = load_model("aliaga2022").encode(rgb)
-    with on_device("meta"), pytest.raises(NotImplementedError):
-        load_model("aliaga2022").encode(rgb)  # PyTorch's device without memory
-    assert seen == ["meta", "meta"]
+    with pytest.raises(NotImplementedError):
+        load_model("aliaga2022", "meta").encode(rgb)  # PyTorch's device without memory
+    assert seen == ["meta"]
     np.testing.assert_array_equal(load_model("aliaga2022").encode(rgb), here)

@@ -7,8 +7,8 @@ from scipy.optimize import least_squares
 from cutis.albedo.kubelka_munk import KubelkaMunkSkin
 from cutis.colour import delta_e
 from cutis.errors import CutisError
-from cutis.inverse import load_model
 from cutis.inverse.kubelka_munk import kubelka_munk_inverse
+from cutis.maps import load_model
 from cutis.optics import from_coordinates
 
 SKIN = KubelkaMunkSkin()

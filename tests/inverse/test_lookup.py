@@ -5,7 +5,6 @@ import pytest
 
 from cutis.albedo import albedo_space, grid_skins
 from cutis.errors import CutisError
-from cutis.inverse import load_model
 from cutis.inverse.lookup import (
     SHAPES,
     LookupTensor,
@@ -14,6 +13,7 @@ from cutis.inverse.lookup import (
     tensor_of_spectra,
 )
 from cutis.kernels.nearest import curve_order
+from cutis.maps import load_model
 from cutis.optics import PARAMETERS, to_coordinates
 
 SMALL = (16, 12, 3, 2, 2)

@@ -7,10 +7,11 @@ import pytest
 
 from cutis.albedo import albedo_space
 from cutis.errors import CutisError
-from cutis.inverse import MODELS, load_model, tissue_of
+from cutis.inverse import MODELS
 from cutis.inverse.baked import Baked, Chart
-from cutis.inverse.models import DEFAULT, stored_name
 from cutis.inverse.trust import look_up_trust
+from cutis.maps import DEFAULT, load_model
+from cutis.maps.defaults import OLD_DEFAULT
 from cutis.optics import ALIAGA2022, MEASURED2026, PARAMETERS, from_coordinates
 
 
@@ -55,8 +56,7 @@ def test_default_is_another_name():
 
 
 def test_headers_that_say_default_are_from_before():
-    assert stored_name("default") == "aliaga2022-exact"
-    assert stored_name("measured2026") == "measured2026"
+    assert OLD_DEFAULT == "aliaga2022-exact"
 
 
 def test_a_model_without_trust_has_none():
@@ -64,7 +64,7 @@ def test_a_model_without_trust_has_none():
 
 
 def test_trust_goes_through_in_bands(monkeypatch):
-    monkeypatch.setattr("cutis.inverse.models.BAND", 4)
+    monkeypatch.setattr("cutis.inverse.model.BAND", 4)
     plain = load_model("aliaga2022-exact")
     knows = replace(plain, to_trust=lambda rgb: np.tile(rgb, 2))
     rgb = np.random.default_rng(3).random((3, 5, 3), dtype=np.float32)
@@ -72,9 +72,9 @@ def test_trust_goes_through_in_bands(monkeypatch):
 
 
 def test_models_have_their_tissue():
-    assert tissue_of("measured2026") is MEASURED2026
+    assert load_model("measured2026").tissue is MEASURED2026
     for name in ("aliaga2022-exact", "aliaga2022", "lookup", "kubelka-munk"):
-        assert load_model(name).tissue is tissue_of(name) is ALIAGA2022
+        assert load_model(name).tissue is load_model(name).tissue is ALIAGA2022
 
 
 @pytest.mark.parametrize("name", MODELS)

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from cutis.albedo import halton
-from cutis.inverse import load_model
-from cutis.inverse.models import networks
 from cutis.inverse.onnx_export import decoder_onnx, encoder_onnx
+from cutis.inverse.shipped import networks
+from cutis.maps import load_model
 from cutis.optics import to_coordinates
 
 onnx = pytest.importorskip("onnx", reason="the extra onnx is not installed")

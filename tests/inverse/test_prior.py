@@ -6,8 +6,8 @@ from scipy.optimize import least_squares
 
 from cutis.albedo import AlbedoSpace, albedo_space
 from cutis.colour import delta_e
-from cutis.inverse.models import shipped_prior
 from cutis.inverse.prior import DARK, TOLERANCE, SkinPrior, load_prior, save_prior, unit_slopes
+from cutis.inverse.shipped import shipped_prior
 from cutis.optics import MEASURED2026, from_coordinates
 
 RNG = np.random.default_rng(6)

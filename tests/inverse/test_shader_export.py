@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from cutis.albedo import halton
-from cutis.inverse import load_model
-from cutis.inverse.models import networks
 from cutis.inverse.shader_export import decoder_glsl
+from cutis.inverse.shipped import networks
+from cutis.maps import load_model
 from cutis.optics import to_coordinates
 
 BROWSER = next(

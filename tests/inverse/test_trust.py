@@ -5,10 +5,10 @@ import pytest
 
 from cutis.albedo import albedo_space, halton
 from cutis.colour import delta_e
-from cutis.inverse import load_model
 from cutis.inverse.baked import MEASURED_CHART, RAW, Baked
-from cutis.inverse.models import shipped_prior
 from cutis.inverse.prior import DARK, unit_slopes
+from cutis.inverse.shipped import shipped_prior
+from cutis.maps import load_model
 from cutis.optics import MEASURED2026, from_coordinates
 
 RNG = np.random.default_rng(12)

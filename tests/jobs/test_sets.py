@@ -83,7 +83,10 @@ def test_a_second_run_does_what_is_missing_or_changed(show, cutis, tmp_path):
         name for name in before if name.startswith("a.")
     }
 
-    assert "3 of 3 estimated" in cutis("estimate", show, "-o", out, "--half").out
+    refused = cutis("estimate", show, "-o", out, "--half")
+    assert refused.code == 1
+    assert "made with other flags (--half)" in refused.err
+    assert {path.name: path.stat().st_mtime_ns for path in out.iterdir()} == after
     assert "3 of 3 estimated" in cutis("estimate", show, "-o", out, "--half", "--again").out
 
 

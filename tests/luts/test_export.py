@@ -8,12 +8,12 @@ from cutis.albedo import albedo_space, halton
 from cutis.colour import delta_e, is_skin_colour
 from cutis.colour.spaces import SPACES, rgb_space
 from cutis.errors import CutisError
-from cutis.inverse import tissue_of
+from cutis.inverse import Calibration
 from cutis.luts import export_lut
 from cutis.luts.clf_lut import is_encoded
 from cutis.luts.cube_lut import edit_lut, is_linear, shape, unshape
 from cutis.luts.recolouring import recolouring
-from cutis.maps import estimate, presets
+from cutis.maps import estimate, load_model, presets
 from studies.figures.subjects import every_face
 
 SRGB = rgb_space("sRGB")
@@ -38,7 +38,7 @@ def skin_colours(tissue):
 
 @pytest.fixture(scope="module")
 def skins():
-    return skin_colours(tissue_of("default"))
+    return skin_colours(load_model("default").tissue)
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +49,7 @@ def edited(skins):
 @pytest.mark.parametrize("model", NODES)
 @pytest.mark.parametrize("space", SPACES, ids=lambda space: space.name)
 def test_a_clf_is_the_edit(space, model, tmp_path):
-    colours = skin_colours(tissue_of(model))
+    colours = skin_colours(load_model(model).tissue)
     edited = recolouring(presets.melanin_more, model)(colours)
     export_lut(tmp_path / "a.clf", presets.melanin_more, space, NODES[model], model=model)
     found = applied(tmp_path / "a.clf", space.from_linear_srgb(colours))
@@ -170,6 +170,23 @@ def test_other_spaces_have_a_cube(skins, edited, tmp_path):
     assert np.median(delta_e(found, edited)) < 0.2
     with pytest.raises(CutisError, match=r"export a \.cube"):
         export_lut(tmp_path / "a.clf", presets.melanin_more, Gamma(), 33)
+
+
+@pytest.mark.parametrize("name", ["a.cube", "a.clf"])
+@pytest.mark.parametrize(
+    "conversion",
+    [
+        ((1, 0, 0), (0, 1, 0), (0, 0, 1e308)),
+        ((1, 0, 0), (0, 1, 0), (0, 0, np.nan)),
+        ((1, 0, 0), (0, 1, 0), (1, 1, 0)),  # of no inverse
+    ],
+)
+def test_colours_that_are_no_numbers_make_no_lut(name, conversion, tmp_path):
+    known = Calibration((1.0, 1.0, 1.0), "none", "A", conversion)
+    with pytest.raises(CutisError, match="no numbers") as caught:
+        export_lut(tmp_path / name, presets.tanning, SRGB, 9, calibration=known)
+    assert "\n" not in str(caught.value)
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize(

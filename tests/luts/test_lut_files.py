@@ -1,5 +1,7 @@
 """LUT files as OpenColorIO reads them."""
 
+from xml.etree import ElementTree
+
 import numpy as np
 import OpenImageIO as oiio
 import pytest
@@ -94,3 +96,36 @@ def test_other_names_are_refused(table, tmp_path):
     with pytest.raises(CutisError, match=r"this LUT is a \.clf"):
         write_clf(tmp_path / "a.cube", [])
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("odd", [np.nan, np.inf, -np.inf, 1e39])
+def test_what_is_not_finite_is_refused(odd, table, tmp_path):
+    table[1, 2, 3, 0] = odd
+    with pytest.raises(CutisError, match="no numbers"):
+        write_cube(tmp_path / "a.cube", table)
+    with pytest.raises(CutisError, match="no numbers"):
+        write_cube(tmp_path / "a.cube", np.zeros((2, 2, 2, 3)), np.array([0, odd]))
+    for operator, values in (
+        (lut_files.grid, table),
+        (lut_files.curves, np.array([[0, 0, 0], [1, odd, 1]])),
+        (lambda v: lut_files.matrix(v, np.zeros(3)), np.diag([1, odd, 1])),
+        (lambda v: lut_files.matrix(np.eye(3), v), np.array([0, 0, odd])),
+    ):
+        with pytest.raises(CutisError, match="no numbers"):
+            operator(values)
+    assert not list(tmp_path.iterdir())
+
+
+def test_values_come_back_to_eight_digits(table, tmp_path):
+    write_clf(tmp_path / "a.clf", [lut_files.grid(table)])
+    tree = ElementTree.parse(tmp_path / "a.clf")
+    [array] = [node for node in tree.iter() if node.tag.endswith("Array")]
+    stored = np.array(array.text.split(), dtype=np.float64)
+    np.testing.assert_allclose(stored, table.astype(np.float32).ravel(), rtol=1e-7)
+
+
+def test_titles_are_in_the_file(table, tmp_path):
+    write_clf(tmp_path / "a.clf", [lut_files.grid(table)], title='melanin ×2 <a> & "b"')
+    root = ElementTree.parse(tmp_path / "a.clf").getroot()
+    assert root.get("name") == 'melanin ×2 <a> & "b"'
+    assert root.get("id") == "cutis"

@@ -7,8 +7,8 @@ import pytest
 
 import cutis
 from cutis.errors import CutisError
-from cutis.inverse import MODELS, load_model
-from cutis.maps import estimate
+from cutis.inverse import MODELS
+from cutis.maps import estimate, load_model
 from cutis.optics import NAMES
 from cutis.report import report
 

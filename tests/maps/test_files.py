@@ -10,9 +10,16 @@ import pytest
 
 import cutis
 from cutis.errors import CutisError
-from cutis.inverse import load_model
-from cutis.inverse.models import DEFAULT
-from cutis.maps import estimate, find_source, load_maps, presets, save_maps, source_note
+from cutis.maps import (
+    DEFAULT,
+    estimate,
+    find_source,
+    load_maps,
+    load_model,
+    presets,
+    save_maps,
+    source_note,
+)
 from cutis.optics import ALIAGA2022, NAMES, PARAMETERS
 from cutis.textures import read_channels, read_texture, write_channels
 
@@ -26,7 +33,7 @@ def made(write_face, face_mask, tmp_path):
     (tmp_path / "out").mkdir()
     path = tmp_path / "out" / "face.skin.exr"
     skin = estimate(cutis.read(capture), face_mask, white=(1.1, 1.0, 0.93))
-    skin = dataclasses.replace(skin, provenance=source_note(read_texture(capture)))
+    skin = dataclasses.replace(skin, notes=source_note(read_texture(capture)))
     skin.save(path)
     return capture, path, skin
 
@@ -153,7 +160,7 @@ def test_a_changed_source(made):
 
 def test_maps_without_a_source(made, tmp_path):
     _, _, skin = made
-    dataclasses.replace(skin, provenance={}).save(tmp_path / "bare.exr")
+    dataclasses.replace(skin, notes={}).save(tmp_path / "bare.exr")
     with pytest.raises(CutisError, match="does not name its capture; give it with --source"):
         find_source(load_maps(tmp_path / "bare.exr").provenance, tmp_path / "bare.exr")
 

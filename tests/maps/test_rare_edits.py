@@ -8,9 +8,9 @@ import pytest
 from cutis.albedo.rare import rare_ratio
 from cutis.colour import reflectance_to_rgb
 from cutis.errors import CutisError
-from cutis.inverse.models import Model, load_model
+from cutis.inverse.model import Model
 from cutis.luts.recolouring import recolouring
-from cutis.maps import Edit, estimate, load_maps, presets, save_maps
+from cutis.maps import Edit, estimate, load_maps, load_model, presets, save_maps, skin_of
 from cutis.maps.relighting import STEEPEST
 from cutis.optics import ALIAGA2022, MEASURED2026, NAMES, RARE_NAMES, WAVELENGTHS
 from cutis.textures import read_channels
@@ -135,13 +135,14 @@ def test_files_keep_them(skin, tmp_path, dtype):
 def test_sigma_goes_with_them(skin, tmp_path):
     """That of the five stays with an edit; of a file, also that of a rare map, as a fit has it."""
     sigma = {name: np.where(skin.mask > 0, 0.01, 0).astype(np.float32) for name in NAMES}
-    known = replace(skin, sigmas=sigma, confidence=skin.mask)
+    known = replace(skin, spread=sigma, sure=skin.mask)
     ill = known.replace(bilirubin=0.05)
     ill.save(tmp_path / "edited.skin.exr")
     again = load_maps(tmp_path / "edited.skin.exr")
     assert (again.rare, set(again.sigmas)) == (("bilirubin",), {*NAMES})
     np.testing.assert_allclose(again.sigma("blood"), sigma["blood"], rtol=1e-3)
-    fitted = replace(ill, sigmas={**sigma, "bilirubin": 0.2 * ill.bilirubin})
+    maps = {name: ill.map(name) for name in (*NAMES, "bilirubin")}
+    fitted = skin_of(maps, skin.mask, sigmas={**sigma, "bilirubin": 0.2 * ill.bilirubin})
     fitted.multiply(bilirubin=2).save(tmp_path / "fitted.skin.exr")
     again = load_maps(tmp_path / "fitted.skin.exr")
     np.testing.assert_allclose(again.bilirubin, 2 * ill.bilirubin)

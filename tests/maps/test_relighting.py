@@ -8,9 +8,8 @@ import pytest
 from cutis.albedo import albedo_space
 from cutis.colour import LINEAR, delta_e, light_conversion, reflectance_to_rgb
 from cutis.errors import CutisError
-from cutis.inverse import calibrate, fit_spectra
-from cutis.inverse.models import DEFAULT
-from cutis.maps import SkinMaps, estimate
+from cutis.inverse import Calibration, calibrate, fit_spectra
+from cutis.maps import DEFAULT, estimate, skin_of
 from cutis.optics import MEASURED2026, NAMES, WAVELENGTHS
 from cutis.textures import Texture
 from studies.figures.measured import BANDS, SURFACE, measured_skins
@@ -74,13 +73,13 @@ def test_there_and_back(light):
     skins = np.random.default_rng(3).uniform(low, high, (10, 30, 5)).astype(np.float32)
     maps = dict(zip(NAMES, np.moveaxis(skins, -1, 0), strict=True))
     rgb = albedo_space(MEASURED2026).rgb(skins)
-    skin = SkinMaps(**maps, mask=np.ones((10, 30)), model="measured2026", source=rgb)
+    skin = skin_of(maps, model="measured2026", source=rgb)
     relit = skin.relit(light)
     known = calibrate(np.zeros((0, 3)), light=light, tissue=MEASURED2026)
     back = delta_e(known.apply(relit), rgb)
     assert back.mean() < 0.8
     assert back.mean() < 0.4 * delta_e(relit, rgb).mean()
-    again = replace(skin, source=relit, calibration=known)
+    again = replace(skin, capture=relit, calibrated=known)
     np.testing.assert_allclose(again.relit("D65"), rgb, atol=1e-5)  # by the spectrum, both ways
 
 
@@ -109,7 +108,7 @@ def test_a_light_of_a_file_that_is_gone_is_undone_by_its_matrix(face_rgb, tmp_pa
 
 
 def test_without_the_capture_the_model_alone(skin):
-    alone = SkinMaps(*(getattr(skin, name) for name in (*NAMES, "mask")))
+    alone = replace(skin.with_capture(None), calibrated=Calibration())
     expected = reflectance_to_rgb(alone.reflectance(), WAVELENGTHS, "A")
     np.testing.assert_allclose(alone.relit("A"), expected, atol=1e-5)
 
@@ -132,11 +131,10 @@ def test_measured_skins_relit_against_their_own_spectra(shared_data):
     measured = measured_skins(shared_data)[::150]
     fitted = fit_spectra(SURFACE + (1 - SURFACE) * measured, BANDS, MEASURED2026, specular=SURFACE)
     rgb = reflectance_to_rgb(measured, BANDS).astype(np.float32)[None]
-    ones = np.ones(rgb.shape[:2], np.float32)
     maps = {name: fitted.values[:, i][None] for i, name in enumerate(NAMES)}
     for light in ("A", "FL11", "LED-B3"):
         truth = reflectance_to_rgb(measured, BANDS, light)
-        known = SkinMaps(**maps, mask=ones, model="measured2026", source=rgb)
+        known = skin_of(maps, model="measured2026", source=rgb)
         assert np.median(delta_e(known.relit(light)[0], truth)) < 0.3
         plain = delta_e(rgb[0], truth)
         suggested = delta_e(estimate(rgb, model=DEFAULT).relit(light)[0], truth)

@@ -8,8 +8,7 @@ import pytest
 import cutis
 from cutis.albedo import albedo_space
 from cutis.errors import CutisError
-from cutis.inverse import load_model
-from cutis.maps import Edit, SkinMaps, estimate, presets
+from cutis.maps import Edit, SkinMaps, estimate, load_model, presets
 from cutis.maps.patches import patches
 from cutis.maps.statistics import BINS
 from cutis.optics import NAMES, parameter
@@ -191,7 +190,7 @@ def test_model_albedo_is_the_decoded_maps_with_calibration_undone(skin):
 
 
 def test_without_the_capture_albedo_is_that_of_the_model(skin):
-    alone = dataclasses.replace(skin, source=None)
+    alone = skin.with_capture(None)
     np.testing.assert_array_equal(alone.albedo(), skin.model_albedo)
     with pytest.raises(CutisError, match="without their capture"):
         alone.residual()
@@ -255,9 +254,9 @@ def test_retouch_refuses_another_size(skin, write_face, tmp_path):
 
 def test_shapes_must_agree(skin):
     with pytest.raises(CutisError, match="blood is"):
-        dataclasses.replace(skin, blood=skin.blood[:3])
+        skin.found.with_values({"blood": skin.blood[:3]})
     with pytest.raises(CutisError, match="source is"):
-        dataclasses.replace(skin, source=skin.source[:3])
+        skin.with_capture(skin.source[:3])
 
 
 def test_a_black_capture_stays_finite():

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from cutis.errors import CutisError
-from cutis.inverse import load_model
-from cutis.maps import Edit, estimate, load_maps
+from cutis.maps import Edit, estimate, load_maps, load_model
 from cutis.maps.trust import EVEN, TrustStatistics, prior_sigma
 from cutis.optics import NAMES, PARAMETERS, to_coordinates
 from cutis.report import report
@@ -58,7 +57,7 @@ def test_maps_can_be_copied(skin):
 
 def test_sigma_of_another_size_is_refused(skin):
     with pytest.raises(CutisError, match="σ of blood is"):
-        replace(skin, sigmas={"blood": np.zeros((2, 2))})
+        replace(skin, spread={"blood": np.zeros((2, 2))})
 
 
 def test_edits_carry_sigma_on(skin):
@@ -137,22 +136,22 @@ def test_the_report_weighs_sigma_against_the_prior(skin, trusting):
 
 
 def test_without_confident_texels_there_is_nothing_to_say(skin):
-    doubtful = report(replace(skin, confidence=np.zeros(skin.shape)))
+    doubtful = report(replace(skin, sure=np.zeros(skin.shape)))
     assert doubtful["low_confidence"] == 1
     assert "informed" not in doubtful["maps"]["melanin"]
-    plain = report(replace(skin, sigmas={}, confidence=None))
+    plain = report(replace(skin, spread={}, sure=None))
     assert "low_confidence" not in plain
 
 
 def test_without_a_prior_any_value_was_as_likely():
     assert load_model("aliaga2022").prior_sigma is None
-    assert prior_sigma("aliaga2022") == (EVEN,) * 5 == prior_sigma("gone.safetensors")
+    assert prior_sigma(load_model("aliaga2022")) == (EVEN,) * 5 == prior_sigma(None)
     values = np.random.default_rng(0).random(100_000)
     assert values.std() == pytest.approx(EVEN, rel=5e-3)
 
 
 def test_statistics_of_nothing():
-    assert TrustStatistics().finish("aliaga2022") == {}
+    assert TrustStatistics().finish(None) == {}
     assert TrustStatistics().low_confidence() is None
 
 
@@ -165,7 +164,7 @@ def test_medians_are_of_the_texels_that_are_likely_skin():
     statistics = TrustStatistics()
     sigmas = {"melanin": np.where(values < 0.5, 0.002, 0.5).astype(np.float32)}
     statistics.add(sigmas, confidence, u, np.ones((1, 10), bool))
-    found = statistics.finish("measured2026")["melanin"]
+    found = statistics.finish(load_model("measured2026"))["melanin"]
     assert found["sure_median"] == pytest.approx(0.02, rel=1e-2)
     assert found["sigma"] == pytest.approx(0.002, rel=1e-2)
     assert statistics.low_confidence() == pytest.approx(0.6)

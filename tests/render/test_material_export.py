@@ -6,8 +6,7 @@ import xml.etree.ElementTree as ElementTree
 import pytest
 
 from cutis.errors import CutisError
-from cutis.inverse.models import DEFAULT
-from cutis.maps import Edit, estimate, save_maps
+from cutis.maps import DEFAULT, Edit, estimate, save_maps
 from cutis.render.blender import find_blender
 from cutis.render.heads import head
 from cutis.render.material_export import export_material

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from cutis.colour import reflectance_to_rgb
-from cutis.maps import SkinMaps
-from cutis.optics import WAVELENGTHS
+from cutis.maps import skin_of
+from cutis.optics import NAMES, WAVELENGTHS
 from cutis.optics.tissue import ALIAGA2022
 from cutis.render.medium import mean_free_path, mean_free_path_in, of_maps
 
@@ -16,9 +16,8 @@ def maps(mask=None):
         return RNG.uniform(low, high, SHAPE).astype(np.float32)
 
     mask = np.ones(SHAPE, np.float32) if mask is None else mask
-    return SkinMaps(
-        one(0.001, 0.5), one(0.001, 1.0), one(10, 250), one(0.1, 1), one(0, 0.999), mask
-    )
+    ranges = ((0.001, 0.5), (0.001, 1.0), (10, 250), (0.1, 1), (0, 0.999))
+    return skin_of({n: one(*ends) for n, ends in zip(NAMES, ranges, strict=True)}, mask)
 
 
 def test_lengths_of_the_published_scattering():

@@ -9,6 +9,7 @@ import pytest
 
 from cutis.errors import CutisError
 from cutis.optics import NAMES
+from cutis.report import Report
 from cutis.report.page import write_report
 
 VOID = {"meta", "link", "img", "input", "br"}
@@ -98,9 +99,9 @@ def pictures():
 
 @pytest.fixture
 def write(tmp_path):
-    def run(*arguments, **more):
+    def run(report, *arguments, **more):
         path = tmp_path / "face.report.html"
-        write_report(path, *arguments, **more)
+        write_report(path, Report.from_dict(report), *arguments, **more)
         text = path.read_text("utf-8")
         return text, Page(text)
 
@@ -178,8 +179,16 @@ def test_names_of_files_and_regions_are_words_and_nothing_else(write, report, pi
     assert len(page.all("script")) == 1
 
 
+def test_what_to_do_next_comes_last(write, report, pictures):
+    text, page = write(report, pictures, "my face.png")
+    assert "cutis edit 'my face.skin.exr' --melanin" in page.words
+    after = text[text.index("<h2>What to do next</h2>") :]
+    assert "<h2>" not in after[10:]
+
+
 @pytest.mark.parametrize(
-    "absent", ["colour", "regions", "clamped", "smoothness", "calibration", "colorspace", "maps"]
+    "absent",
+    ["colour", "regions", "clamped", "smoothness", "calibration", "colorspace", "maps", "size"],
 )
 def test_what_a_report_lacks_is_left_out(absent, write, report, pictures):
     del report[absent]
@@ -231,4 +240,4 @@ def test_a_page_of_noise_stays_below_three_megabytes(write, report):
 
 def test_a_folder_that_is_not_there_is_named(report, pictures, tmp_path):
     with pytest.raises(CutisError, match="does not exist"):
-        write_report(tmp_path / "no" / "page.html", report, pictures, "face.png")
+        write_report(tmp_path / "no" / "page.html", Report.from_dict(report), pictures, "face.png")

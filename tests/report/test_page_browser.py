@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from cutis.optics import NAMES
+from cutis.report import Report
 from cutis.report.page import write_report
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
@@ -57,7 +58,8 @@ def page_file(tmp_path_factory):
     pictures |= {n: 0.01 + 0.2 * noise((96, 64), np.float32) for n in ("error", *NAMES)}
     row = {"unit": "1", "p5": 1.23e-5, "median": 0.0123, "p95": 0.123}
     region = {"texels": 16_384**2, "ita_median": -42.5, "delta_e_mean": 0.123}
-    region |= {"maps": dict.fromkeys(NAMES, row)}
+    ends = {key: value for key, value in row.items() if key != "unit"}
+    region |= {"maps": dict.fromkeys(NAMES, ends)}
     report = {
         "model": "default", "size": [16384, 16384], "masked_texels": 16384**2,
         "skin_texels": 16384**2, "below_0": 123456, "above_1": 123456, "colorspace": "ACEScg",
@@ -69,7 +71,12 @@ def page_file(tmp_path_factory):
         "regions": [{"name": n, **region} for n in ("nose", "a_region_" + 9 * "of_long_name")],
     }  # fmt: skip
     path = tmp_path_factory.mktemp("page") / "a.report.html"
-    write_report(path, report, pictures, "a_texture_" + 12 * "with_a_long_name_" + ".1001.exr")
+    write_report(
+        path,
+        Report.from_dict(report),
+        pictures,
+        "a_texture_" + 12 * "with_a_long_name_" + ".1001.exr",
+    )
     return path
 
 
@@ -138,3 +145,24 @@ def test_the_slider_uncovers_the_input_by_keyboard(open_page):
     assert over.evaluate(clip) == "inset(0px 100% 0px 0px)"
     slider.press("End")
     assert over.evaluate(clip).replace("0%", "0px") in ("inset(0px)", "inset(0px 0px 0px 0px)")
+
+
+@pytest.mark.parametrize("how", ["click", "keyboard"])
+def test_pictures_open_large(how, open_page):
+    page = open_page(1280)
+    dialog, small = page.locator("dialog"), page.locator("img.picture")
+    assert small.count() == 12  # two of them lie over others, to be compared
+    for name in ("Reconstruction", "melanin map"):
+        picture = page.locator(f'main img[alt^="{name}"]')
+        before = picture.bounding_box()
+        if how == "click":
+            picture.click()
+        else:
+            picture.press("Enter")
+        assert dialog.is_visible()
+        large = dialog.locator("img")
+        assert large.get_attribute("alt").startswith(name)
+        assert large.get_attribute("src") == picture.get_attribute("src")
+        assert large.bounding_box()["height"] > 1.3 * before["height"]
+        page.keyboard.press("Escape")
+        assert not dialog.is_visible()

@@ -32,21 +32,22 @@ def test_numbers_of_each_colour(skin, picture, rows):
     for top in range(0, skin.shape[0], rows):
         part = slice(top, min(top + rows, skin.shape[0]))
         regions.add(skin.rows(part), part)
-    red, blue = sorted(regions.finish(), key=lambda one: one["name"], reverse=True)
-    assert (red["name"], red["texels"]) == ("#ff0000", 120)
-    assert (blue["name"], blue["texels"]) == ("#0080ff", 14 * 20)
+    red, blue = sorted(regions.finish(), key=lambda one: one.name, reverse=True)
+    assert (red.name, red.texels) == ("#ff0000", 120)
+    assert (blue.name, blue.texels) == ("#0080ff", 14 * 20)
     for name in NAMES:
         values = getattr(skin, name)[:10, :12]
         expected = np.percentile(values, 50, method="inverted_cdf")
-        assert red["maps"][name]["median"] == pytest.approx(expected, rel=1e-3)
+        assert red.maps[name].median == pytest.approx(expected, rel=1e-3)
 
 
 def test_off_the_mask_is_in_no_region(skin, picture):
     mask = np.zeros(skin.shape, np.float32)
     mask[:2] = 1
     regions = Regions(picture, skin.shape)
-    regions.add(dataclasses.replace(skin, mask=mask), slice(0, skin.shape[0]))
-    assert [one["texels"] for one in regions.finish()] == [24]
+    narrow = dataclasses.replace(skin, found=dataclasses.replace(skin.found, mask=mask))
+    regions.add(narrow, slice(0, skin.shape[0]))
+    assert [one.texels for one in regions.finish()] == [24]
 
 
 def test_other_sizes_and_soft_edges(skin, tmp_path):

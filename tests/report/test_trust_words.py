@@ -1,15 +1,18 @@
 """What σ says of the maps of one face, in words."""
 
+from dataclasses import replace
+
 import pytest
 
+from cutis.report.numbers import MapNumbers
 from cutis.report.trust_words import DARK, ROUGHLY, WELL, known, lines, spread
 
 
 def maps(informed, melanin=0.02, sigma=0.01):
     rows = {"melanin": melanin, "blood": 0.04, "thickness": 80.0, "oxygenation": 0.7}
     return {
-        name: {"unit": "µm" if name == "thickness" else "1", "median": median, "sigma": sigma,
-               "informed": informed}
+        name: MapNumbers("µm" if name == "thickness" else "1", 0.0, median, 1.0, sigma=sigma,
+                         informed=informed)
         for name, median in rows.items()
     }  # fmt: skip
 
@@ -33,9 +36,10 @@ def test_blood_below_a_dark_epidermis_is_hidden():
 
 
 def test_maps_without_sigma_have_no_words():
-    assert known({"melanin": {"median": 0.02, "unit": "1"}}, "melanin") is None
+    plain = {"melanin": MapNumbers("1", 0.01, 0.02, 0.03)}
+    assert known(plain, "melanin") is None
     assert known({}, "melanin") is None
-    assert list(lines({"melanin": {"median": 0.02, "unit": "1"}}, None)) == []
+    assert list(lines(plain, None)) == []
 
 
 def test_fractions_are_said_as_shares_of_themselves():
@@ -53,7 +57,7 @@ def test_lines():
 
 
 def test_shares_and_darkness_are_of_skin_and_not_of_hair_in_the_mask():
-    rows = {name: dict(row) for name, row in maps(0.1, melanin=0.5, sigma=0.002).items()}
-    rows["melanin"]["sure_median"] = 0.02
+    rows = maps(0.1, melanin=0.5, sigma=0.002)
+    rows["melanin"] = replace(rows["melanin"], sure_median=0.02)
     assert spread(rows, "melanin") == "±10 %"
     assert known(rows, "blood")[1] == "hardly known"

@@ -145,3 +145,52 @@ def test_any_header_is_a_cube_or_one_line(write_envi, tmp_path, fields):
     except CutisError as error:
         said = str(error)
     assert "\n" not in said
+
+
+UNITS = {
+    "Nanometer": 1, "nanometers": 1, "{Nanometers}": 1, "nm": 1, "Micrometer": 1e-3,
+    "Micrometers": 1e-3, "{ Micrometers }": 1e-3, "microns": 1e-3, "um": 1e-3,
+    "Angstrom": 10, "Angstroms": 10, "Meters": 1e-9, "Unknown": 1, "": 1,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("unit", UNITS)
+def test_units_in_the_singular_and_plural(write_envi, tmp_path, unit):
+    listed = "{" + ", ".join(f"{lam * UNITS[unit]:.9g}" for lam in LAM) + "}"
+    fields = {"wavelength": listed, "wavelength units": unit}
+    with open_cube(write_envi(tmp_path / "a.hdr", cube(), **fields)) as file:
+        np.testing.assert_allclose(file.wavelengths, LAM)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda text: "\ufeff" + text,
+        lambda text: text.replace("700}", "700,\n}"),
+        lambda text: text.replace("700}", "700, , }"),
+        lambda text: text.replace("\n", "\r\n"),
+        lambda text: text.replace("wavelength units", "Wavelength_Units"),
+        lambda text: text.replace("wavelength =", "Wavelengths ="),
+        lambda text: text.replace("samples = 4", "samples = 4.0"),
+        lambda text: text.replace("ENVI\n", "ENVI \n; a comment = x\n"),
+        lambda text: text.replace("interleave = bsq", "interleave = BSQ"),
+    ],
+)
+def test_headers_nearly_as_they_should_be(write_envi, tmp_path, change):
+    path = write_envi(tmp_path / "a.hdr", cube())
+    path.write_bytes(change(path.read_text("utf-8")).encode())
+    with open_cube(path) as file:
+        np.testing.assert_array_equal(file.wavelengths, LAM)
+        np.testing.assert_array_equal(file.rows(slice(0, 5)), cube().astype(np.float32))
+
+
+@pytest.mark.parametrize("dtype", ["<u1", "<u2", "<i4", "<f4"])
+def test_whole_numbers_are_not_percent(write_envi, tmp_path, dtype):
+    """A camera of 8 bits sees dark skin below 50."""
+    from cutis.spectra.reflectance import fraction_scale
+
+    values = np.rint(cube() * 120)
+    with open_cube(write_envi(tmp_path / "a.hdr", values, dtype=dtype)) as file:
+        with pytest.raises(CutisError, match=r"whole numbers of up to \d+ are percent or counts"):
+            fraction_scale(file.path, file.sample())
+        assert fraction_scale(file.path, file.sample(), 255)[0] == 1 / 255

@@ -7,9 +7,9 @@ from cutis.errors import CutisError
 from cutis.spectra.reflectance import (
     fraction_scale,
     nanometres,
-    read_wavelengths,
     without_impossible,
 )
+from cutis.spectra.wavelengths import read_wavelengths
 
 
 @pytest.mark.parametrize(

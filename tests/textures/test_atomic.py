@@ -1,10 +1,11 @@
 import os
 import stat
+from pathlib import Path
 
 import pytest
 
 from cutis.errors import CutisError
-from cutis.textures import replacing, sweep
+from cutis.textures import check_outputs, replacing, sweep
 
 
 def test_the_file_appears_whole(tmp_path):
@@ -63,15 +64,10 @@ def test_missing_folder_and_folder_as_name(tmp_path, one_line):
         one_line(caught, path)
 
 
-def test_system_errors_about_the_file_are_explained(tmp_path, one_line):
-    path = tmp_path / ("x" * 40) / ("y" * 300 + ".txt")
-    path.parent.mkdir()
-    with pytest.raises(CutisError, match="cannot be written") as caught, replacing(path) as t:
-        t.write_text("x")
-    one_line(caught, path)
+def test_system_errors_about_the_file_are_explained(tmp_path):
     with pytest.raises(CutisError, match="no space left"), replacing(tmp_path / "full"):
         raise OSError(28, "No space left on device")
-    assert list(tmp_path.iterdir()) == [path.parent]
+    assert not list(tmp_path.iterdir())
 
 
 def test_errors_about_other_files_pass(tmp_path):
@@ -102,3 +98,72 @@ def test_what_killed_processes_left_is_swept(tmp_path):
         assert not left.exists()
     assert all(path.exists() for path in others)
     assert (tmp_path / "new.exr").read_bytes() == b"whole"
+
+
+@pytest.mark.parametrize("letter", ["y", "ä", "語", "🙂"])
+def test_names_as_long_as_names_may_be(tmp_path, letter, one_line):
+    """Bytes count, and the temporary name is no longer."""
+    longest = os.pathconf(tmp_path, "PC_NAME_MAX")
+    count = (longest - 4) // len(letter.encode())
+    path = tmp_path / f"{letter * count}.txt"
+    check_outputs([path])
+    with replacing(path) as temporary:
+        temporary.write_text("x")
+    assert path.read_text() == "x"
+    path = tmp_path / f"{letter * (count + 1)}.txt"
+    for action in (lambda: check_outputs([path]), lambda: replacing(path).__enter__()):
+        with pytest.raises(
+            CutisError, match=f"longer than {longest} bytes; choose a sho"
+        ) as caught:
+            action()
+        one_line(caught, path)
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_a_path_longer_than_paths_may_be(tmp_path):
+    path = tmp_path.joinpath(*["folder"] * 700, "a.txt")
+    with pytest.raises(CutisError, match=r"does not exist|path is longer|too long"):
+        check_outputs([path])
+
+
+def test_what_is_no_file_is_never_replaced(tmp_path, one_line):
+    pipe, link, null = tmp_path / "pipe.csv", tmp_path / "link.csv", tmp_path / "null.csv"
+    os.mkfifo(pipe)
+    link.symlink_to(pipe)
+    null.symlink_to("/dev/null")
+    before = sorted(tmp_path.iterdir())
+    for path, what in [(pipe, "is a pipe"), (link, "is a pipe"), (null, "is a device"),
+                       (Path("/dev/null"), "is a device")]:  # fmt: skip
+        for action in (lambda one: check_outputs([one]), lambda one: replacing(one).__enter__()):
+            with pytest.raises(CutisError, match=f"{what}.*; give the name of a file") as caught:
+                action(path)
+            one_line(caught, path)
+    assert stat.S_ISFIFO(pipe.lstat().st_mode)
+    assert stat.S_ISCHR(os.stat("/dev/null").st_mode)
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def test_a_link_to_nothing_is_followed(tmp_path):
+    link = tmp_path / "link"
+    link.symlink_to(tmp_path / "target")
+    with replacing(link) as temporary:
+        temporary.write_text("x")
+    assert (tmp_path / "target").read_text() == "x"
+    assert link.is_symlink()
+
+
+def test_every_writer_clears_what_others_left(tmp_path):
+    """Once a process and folder; nothing that somebody else called so."""
+    left = tmp_path / ".old.0123abcd.partial.exr"
+    names = (".old.0123abcd.exr", ".old.0123ABCD.partial.exr", "old.0123abcd.partial.exr",
+             ".b.0123abcd.partial.exr")  # fmt: skip
+    others = [tmp_path / name for name in names]
+    for path in (left, *others[:3]):
+        path.write_bytes(b"x")
+        os.utime(path, (1, 1))
+    others[3].mkdir()
+    os.utime(others[3], (1, 1))
+    with replacing(tmp_path / "new") as temporary:
+        temporary.write_text("x")
+    assert not left.exists()
+    assert all(path.exists() for path in others)

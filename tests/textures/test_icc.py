@@ -7,7 +7,8 @@ import pytest
 from PIL import Image, ImageCms
 
 from cutis.colour import LINEAR, SRGB, decode_srgb, encode_srgb, rgb_space
-from cutis.textures.icc import IccSpace, icc_space
+from cutis.textures.curves import CurveSpace
+from cutis.textures.icc import icc_space
 from cutis.textures.profile import SRGB_CURVE
 
 STEPS = np.linspace(0, 1, 18)
@@ -82,7 +83,7 @@ def test_matrices_against_colour_science(icc, primaries, name):
         colour.RGB_COLOURSPACES[name], colour.RGB_COLOURSPACES["sRGB"], "Bradford"
     )
     space = icc_space(icc.profile(getattr(icc, primaries), icc.gamma(1.5)))
-    assert isinstance(space, IccSpace)
+    assert isinstance(space, CurveSpace)
     np.testing.assert_allclose(space.matrix, expected, atol=4e-4)
     np.testing.assert_allclose(space.to_linear_srgb(np.ones(3)), 1, atol=1e-12)
 
@@ -93,7 +94,7 @@ def test_profiles_of_our_own_spaces_are_those(icc):
     assert icc_space(icc.profile(icc.SRGB, icc.table(decode_srgb(np.linspace(0, 1, 1024))))) is SRGB
     assert icc_space(icc.profile(icc.SRGB, icc.table([]))) is LINEAR
     assert icc_space(icc.profile(icc.P3, icc.para(3, *SRGB_CURVE))) is rgb_space("Display P3")
-    assert isinstance(icc_space(icc.profile(icc.SRGB, icc.gamma(2.2))), IccSpace)
+    assert isinstance(icc_space(icc.profile(icc.SRGB, icc.gamma(2.2))), CurveSpace)
 
 
 def test_names(icc):

@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
+from PIL import Image
 
 from cutis.errors import CutisError
-from cutis.textures import read_mask, write_channels
+from cutis.textures import MaskFile, read_mask, write_channels
 
 
 def refused(path, shape, one_line, match):
@@ -66,3 +67,69 @@ def test_refusals(tmp_path, make, one_line):
     other = make.image(tmp_path / "o.exr", np.ones((5, 7, 3), np.float32), ["X", "Y", "Z"])
     refused(other, (5, 7), one_line, "called mask")
     refused(tmp_path / "none.png", (5, 7), one_line, "no such file")
+
+
+INSIDE = np.zeros((48, 64), np.uint8)
+INSIDE[10:30, 10:40] = 255
+PHOTO = np.random.default_rng(5).integers(40, 200, (48, 64, 3)).astype(np.uint8)
+
+
+def saved(path, *planes):
+    Image.fromarray(np.dstack(planes) if len(planes) > 1 else planes[0]).save(path)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("planes", "word"),
+    [
+        ((np.full_like(INSIDE, 255),), "in its alpha"),  # white everywhere, LA
+        ((np.zeros_like(INSIDE),), "in its alpha"),
+        ((np.full_like(INSIDE, 255),) * 3, "in its alpha"),  # RGBA
+        ((np.zeros_like(INSIDE),) * 3, "in its alpha"),
+        ((np.full_like(INSIDE, 200), INSIDE * 0, INSIDE * 0), "in its alpha"),  # a red overlay
+        ((PHOTO[..., 0], PHOTO[..., 1], PHOTO[..., 2]), "in its alpha"),  # a cut-out face
+        ((INSIDE,) * 3, "in its alpha"),  # white paint on a transparent layer
+    ],
+)
+@pytest.mark.parametrize("kind", ["png", "tif"])
+def test_alpha_that_is_the_mask_counts(tmp_path, planes, word, kind):
+    path = saved(tmp_path / f"m.{kind}", *planes, INSIDE)
+    assert np.array_equal(read_mask(path, (48, 64)), INSIDE / 255)
+    with MaskFile(path, (48, 64)) as file:
+        assert word in file.notes[0]
+        assert np.array_equal(file.rows(slice(5, 20)), INSIDE[5:20] / 255)
+
+
+def test_soft_edges_of_alpha(tmp_path):
+    soft = np.tile(np.clip(np.arange(64) * 40.0 - 1200, 0, 255).astype(np.uint8), (48, 1))
+    path = saved(tmp_path / "m.png", *(np.full_like(soft, 255),) * 3, soft)
+    np.testing.assert_allclose(read_mask(path, (48, 64)), soft / 255, atol=1e-6)
+
+
+@pytest.mark.parametrize("alpha", [0, 128, 255])
+def test_alpha_that_says_nothing_is_not_the_mask(tmp_path, alpha):
+    path = saved(tmp_path / "m.png", *(INSIDE,) * 3, np.full_like(INSIDE, alpha))
+    assert np.array_equal(read_mask(path, (48, 64)), INSIDE / 255)
+
+
+def test_two_masks_in_one_picture_show_what_a_viewer_shows(tmp_path):
+    other = np.zeros_like(INSIDE)
+    other[:, 20:] = 255
+    path = saved(tmp_path / "m.png", *(INSIDE,) * 3, other)
+    assert np.array_equal(read_mask(path, (48, 64)), INSIDE / 255 * (other > 0))
+    with MaskFile(path, (48, 64)) as file:
+        assert file.notes == ["the mask is its colour where its alpha channel is opaque"]
+
+
+def test_multiplied_alpha_is_in_the_colour_already(tmp_path, make):
+    alpha = INSIDE[..., None].astype(np.float32) / 255
+    alpha[10] = 0.5
+    path = make.image(tmp_path / "m.exr", np.concatenate([alpha * 1.0] * 4, -1))
+    np.testing.assert_allclose(read_mask(path, (48, 64)), alpha[..., 0])
+
+
+def test_a_palette_with_transparency(tmp_path):
+    picture = Image.fromarray((INSIDE > 0).astype(np.uint8), "P")
+    picture.putpalette([255, 255, 255] * 2)
+    picture.save(tmp_path / "m.png", transparency=0)
+    assert np.array_equal(read_mask(tmp_path / "m.png", (48, 64)), INSIDE / 255)

@@ -4,6 +4,7 @@ import os
 import struct
 import sys
 
+import handmade as hand
 import numpy as np
 import OpenImageIO as oiio
 import pytest
@@ -12,7 +13,7 @@ from hypothesis import strategies as st
 
 from cutis.colour import LINEAR, SRGB
 from cutis.errors import CutisError
-from cutis.textures import read_channels, read_texture, write_texture
+from cutis.textures import read_channels, read_mask, read_texture, write_texture
 
 CMYK_JPEG = base64.b85decode(
     "|JeWT01iQ9Z(?NtWB>pF0095n07C!}3k(hn3J?wr4iXU%6BsBO7#0>7F(V}%C^|DeJUKHsH$X^SPC!IgMK?H5ZBbWW"
@@ -375,3 +376,83 @@ def test_dpx_of_film_densities_needs_a_name(tmp_path, make, random, one_line):
     path = make.image(tmp_path / "a.dpx", pixels_of(random, "uint16"), attributes=attributes)
     refused(path, one_line, "--colorspace")
     assert read_texture(path, "ADX10").space.name == "ADX10"
+
+
+@pytest.mark.parametrize(
+    ("number", "name"),
+    [
+        (50000, "Zstandard"),
+        (50002, "JPEG XL"),
+        (34925, "LZMA"),
+        (34712, "JPEG 2000"),
+        (34887, "LERC"),
+    ],
+)
+def test_a_decoder_that_is_missing_is_no_damage(tmp_path, one_line, number, name):
+    path = hand.tiff(tmp_path / "a.tif", {259: ("H", [number])})
+    message = refused(path, one_line, f"is packed with {name}, which is not supported")
+    assert "save it with LZW or ZIP" in message
+    assert "damaged" not in message
+
+
+def test_a_jpeg_of_a_rare_kind(tmp_path, one_line):
+    path = hand.jpeg(tmp_path / "a.jpg")
+    content = path.read_bytes()
+    at = content.index(b"\xff\xc0")
+    path.write_bytes(content[: at + 1] + b"\xc3" + content[at + 2 :])
+    refused(path, one_line, "is packed with lossless JPEG, which is not supported; save it as")
+
+
+@pytest.mark.parametrize(
+    ("start", "what"),
+    [
+        (b"RIFF\0\0\0\0WEBPVP8 ", "a WebP image"),
+        (b"\0\0\0\x1cftypavif", "an AVIF image"),
+        (b"\0\0\0\x18ftypheic", "a HEIF image"),
+        (b"\xff\x0a\xfa", "a JPEG XL image"),
+        (b"\0\0\0\x0cJXL \r\n", "a JPEG XL image"),
+        (b"#?RADIANCE\n", "a Radiance picture"),
+        (b"%PDF-1.7", "a PDF document"),
+        (b"\x93NUMPY\1\0", "a NumPy array"),
+    ],
+)
+def test_files_of_other_kinds_are_called_what_they_are(tmp_path, one_line, start, what):
+    path = tmp_path / "a.png"
+    path.write_bytes(start + bytes(40))
+    refused(path, one_line, f"is {what}, not a PNG, JPEG, TIFF")
+
+
+def test_a_png_as_xcode_packs_it(tmp_path, one_line):
+    content = hand.png(tmp_path / "a.png").read_bytes()
+    (tmp_path / "a.png").write_bytes(content[:8] + hand.png_chunk(b"CgBI", bytes(4)) + content[8:])
+    refused(tmp_path / "a.png", one_line, "as Xcode packs them")
+
+
+def test_a_file_is_looked_through_once(tmp_path, monkeypatch):
+    """However often it is opened, until it changes."""
+    from cutis.textures import headers
+
+    path, looks = hand.png(tmp_path / "a.png"), []
+    real = headers.check_png
+    monkeypatch.setattr(headers, "check_png", lambda *how: looks.append(1) or real(*how))
+    for _ in range(3):
+        read_texture(path)
+        read_mask(path, hand.SIZE)
+    assert len(looks) == 1
+    hand.png(path, (b"sRGB", b"\0"))
+    assert read_texture(path).origin == "its sRGB chunk"
+    assert len(looks) == 2
+
+
+def test_large_pngs_are_judged_by_checksums(tmp_path, random, one_line, monkeypatch):
+    """Their rows are not unpacked twice; truncation and damage are found all the same."""
+    monkeypatch.setattr("cutis.textures.png._INFLATED", 1000)
+    pixels = random.integers(0, 65536, (40, 20, 3)).astype(np.uint16)
+    path = hand.png(tmp_path / "a.png", pixels=pixels)
+    content = path.read_bytes()
+    assert len(content) > 1000
+    assert np.array_equal(read_texture(path).pixels, pixels)
+    (tmp_path / "b.png").write_bytes(content[:-50])
+    refused(tmp_path / "b.png", one_line, "truncated")
+    (tmp_path / "c.png").write_bytes(content[:600] + b"??" + content[602:])
+    refused(tmp_path / "c.png", one_line, "checksum")

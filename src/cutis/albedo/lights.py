@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutis.albedo.space import albedo_space
-from cutis.colour import illuminant
+from cutis.colour import LightLike, illuminant
 from cutis.optics import Tissue
 
 LIKELY = np.array([[0.005, 0.5], [0.003, 0.1], [20.0, 150.0], [0.2, 1.0], [0.2, 0.95]])
@@ -19,7 +19,7 @@ DARK = 0.01
 """Albedo added to the weight, so that the darkest skins do not rule."""
 
 
-def skin_conversion(light: str, tissue: Tissue) -> NDArray[np.float64]:
+def skin_conversion(light: LightLike, tissue: Tissue) -> NDArray[np.float64]:
     """(3, 3) matrix C: linear sRGB of skin, balanced on `light`, → under D65, rgb @ C.T.
 
     Of relative squared error least over LIKELY skins of a tissue with the five free parameters.

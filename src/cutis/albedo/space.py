@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from cutis.albedo.separated import separate
 from cutis.albedo.spectral_table import CELLS, SpectralTable, spectral_table
-from cutis.colour import spectrum_to_rgb
+from cutis.colour import LightLike, spectrum_to_rgb
 from cutis.errors import CutisError
 from cutis.optics import (
     ALIAGA2022,
@@ -89,7 +89,7 @@ class AlbedoSpace:
             self._sum(flat[band], NO_WEIGHTS, spectra[band])
         return out
 
-    def rgb(self, parameters: ArrayLike, light: str = "D65") -> NDArray[np.float32]:
+    def rgb(self, parameters: ArrayLike, light: LightLike = "D65") -> NDArray[np.float32]:
         """(..., 5) parameters → (..., 3) linear sRGB, white-balanced under `light`.
 
         Lights are those of `colour.illuminant`; CutisError for others.

@@ -1,50 +1,54 @@
-"""What commands say: progress with time left, tables, one clear line for errors."""
+"""What commands say: progress with time left, tables, one clear line for errors.
+
+Whatever is printed may quote names and texts out of files, which may hold anything: what would
+direct a terminal is shown as its code.
+"""
 
 import signal
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from typing import Any
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.table import Table
 
+from cutis.errors import printable
+
+
+class Said(Console):
+    """A console on which texts of ours, and those of files in them, cannot direct the terminal."""
+
+    def say(self, text: str) -> None:
+        """Prints one line."""
+        self.print(printable(text))
+
+
 # Names of files are printed as they are: no markup, no emoji, no line breaks inside them.
-out = Console(highlight=False, markup=False, emoji=False, soft_wrap=True)
-err = Console(stderr=True, highlight=False, markup=False, emoji=False)
+out = Said(highlight=False, markup=False, emoji=False, soft_wrap=True)
+err = Said(stderr=True, highlight=False, markup=False, emoji=False, soft_wrap=True)
 
 
-class Steps:
-    """A progress bar of a known number of steps, each announced by name."""
+class Bar:
+    """A progress bar: call it with what is done, all, and what is being done."""
 
-    def __init__(self, progress: Progress, total: int) -> None:
+    def __init__(self, progress: Progress) -> None:
         self._progress = progress
-        self._task = progress.add_task("", total=total)
-        self._begun = False
+        self._task = progress.add_task("", total=1)
         self.interrupted = False
 
-    def step(self, name: str) -> None:
-        """Ends the step before and names the one that begins."""
-        self._check()
-        if self._begun:
-            self._progress.advance(self._task)
-        self._begun = True
-        self._progress.update(self._task, description=name)
-
-    def at(self, done: int, total: int, name: str) -> None:
-        """Sets the whole bar: `done` of `total`."""
-        self._check()
-        self._progress.update(self._task, completed=done, total=total, description=name)
-
-    def _check(self) -> None:
+    def __call__(self, done: int, total: int, doing: str) -> None:
+        """Shows how far the work is, and ends it where the user asked for that."""
         if self.interrupted:
             raise KeyboardInterrupt
+        self._progress.update(self._task, completed=done, total=total, description=printable(doing))
 
 
 @contextmanager
-def steps(total: int, quiet: bool) -> Iterator[Steps]:
+def bar(quiet: bool) -> Iterator[Bar]:
     """A bar on stderr that goes away when done; none when `quiet` or when nobody watches."""
     columns = (
-        TextColumn("{task.description:<24}"),
+        TextColumn("{task.description:<24}", markup=False),
         BarColumn(),
         TimeElapsedColumn(),
         TextColumn("left"),
@@ -52,9 +56,9 @@ def steps(total: int, quiet: bool) -> Iterator[Steps]:
     )
     hidden = quiet or not err.is_terminal
     with Progress(*columns, console=err, transient=True, disable=hidden) as progress:
-        running = Steps(progress, total)
+        running = Bar(progress)
 
-        def interrupt(*_: object) -> None:
+        def interrupt(number: int, _: Any) -> None:
             # Python drops exceptions raised inside callbacks of libraries, compilers among them:
             # what was dropped is raised again at the next step.
             running.interrupted = True

@@ -22,14 +22,15 @@ def demo(
 
     Example: cutis demo -o demo
     """
-    from cutis.apps import estimate
-    from cutis.apps.console import out, steps
+    from cutis.apps.console import bar, out
+    from cutis.apps.estimate_words import say_one
     from cutis.errors import CutisError
-    from cutis.jobs.edit import Job, edit_file
-    from cutis.jobs.estimate import Settings, Task, calibrated, estimate_and_show
+    from cutis.jobs.edit import EditJob
+    from cutis.jobs.estimate import CaptureFiles, EstimateJob
+    from cutis.jobs.job import part
     from cutis.maps import presets
     from cutis.report.page import write_report
-    from cutis.report.previews import reduced
+    from cutis.report.previews import previews_of, reduced
     from cutis.textures import read_texture
 
     examples = Path(__file__).parents[3] / "examples"
@@ -37,16 +38,19 @@ def demo(
         raise CutisError(
             "the demo needs a clone of the repository; for your own face: cutis estimate FILE"
         )
-    task = Task(examples / CAPTURE, examples / MASK, output, Settings(white="auto"))
-    with steps(1, quiet) as progress:
-        calibration = calibrated([task], progress.at)
-        results, pictures = estimate_and_show(task, calibration, progress.at)
-        tanned = Path(f"{task.stem}.tanned.png")
-        edit_file(Job(Path(f"{task.stem}.skin.exr"), tanned, presets.tanning), progress.at)
-        pictures["edited"] = reduced(read_texture(tanned).linear())
+    capture = CaptureFiles(examples / CAPTURE, examples / MASK)
+    job = EstimateJob((capture,), output, white="auto", again=True)
+    with bar(quiet) as progress:
+        (found,) = job.run(part(progress, 0, 2))
+        if found.report is None:
+            raise CutisError(str(found.failure))
+        tanned = Path(f"{job.stem(capture)}.tanned.png")
+        maps = Path(f"{job.stem(capture)}.skin.exr")
+        EditJob(maps, tanned, presets.tanning).run(part(progress, 1, 2))
+        pictures = {**previews_of(maps), "edited": reduced(read_texture(tanned).linear())}
         notes = ["Edited: tanned, melanin +40 %, all of it pheomelanin.", CREDIT]
-        write_report(output / "index.html", results, pictures, CAPTURE, notes)
+        write_report(output / "index.html", found.report, pictures, CAPTURE, notes)
     if not quiet:
-        estimate.say(results, "auto")
-        out.print(f"wrote the tanned face to {tanned}")
-        out.print(f"open {output / 'index.html'}")
+        say_one(found.report, capture.face, maps)
+        out.say(f"wrote the tanned face to {tanned}")
+        out.say(f"open {output / 'index.html'}")

@@ -8,23 +8,15 @@ import typer
 from cutis.apps import options
 
 
+@options.parameter_changes
 def edit(
     maps: Annotated[Path, typer.Argument(help="Maps that estimate wrote, NAME.skin.exr.")],
     output: Annotated[Path, typer.Option("--output", "-o", help="Edited albedo to write.")],
-    melanin: options.MelaninChange = None,
-    blood: options.BloodChange = None,
-    thickness: options.ThicknessChange = None,
-    eumelanin: options.EumelaninChange = None,
-    oxygenation: options.OxygenationChange = None,
-    bilirubin: options.BilirubinChange = None,
-    carotene: options.CaroteneChange = None,
-    methaemoglobin: options.MethaemoglobinChange = None,
+    changes: options.Changes,
     preset: options.Presets = None,
     amount: options.Amount = 1.0,
     mask: options.Mask = None,
-    source: Annotated[
-        Path | None, typer.Option(help="The capture, if it is not where the maps say.")
-    ] = None,
+    source: options.Source = None,
     illuminant: Annotated[
         str | None,
         typer.Option(
@@ -50,54 +42,22 @@ def edit(
 
     Example: cutis edit out/face.skin.exr --illuminant A -o bulb.png
     """
-    from cutis.apps.console import out, steps
-    from cutis.colour import light_conversion
-    from cutis.errors import CutisError
-    from cutis.jobs.edit import Job, edit_file
-    from cutis.textures import colour_space, format_of
-    from cutis.textures.udim import TOKEN, tile_of, udim_tiles
+    from cutis.apps.console import bar, out
+    from cutis.jobs.edit import EditJob
 
-    by_tensor = None if method is None else options.method_name(method)
-    flags = {
-        "melanin": melanin,
-        "blood": blood,
-        "thickness": thickness,
-        "eumelanin": eumelanin,
-        "oxygenation": oxygenation,
-        "bilirubin": bilirubin,
-        "carotene": carotene,
-        "methaemoglobin": methaemoglobin,
-    }
-    edits = options.edits(preset, flags)
-    format_of(output)  # fails now rather than after the work
-    space = None if output_colorspace is None else colour_space(output_colorspace, ocio)
-    if illuminant is not None:
-        light_conversion("D65", illuminant)  # fails now too
-    job = Job(
-        maps, output, tuple(edits), amount, mask, source, by_tensor, space, save_maps, illuminant
-    )
-    jobs = [job]
-    if TOKEN in maps.name:
-        named_all = [path for path in (output, save_maps, source) if path is not None]
-        for path in named_all:
-            if TOKEN not in path.name:
-                raise CutisError(f"{path}: of a UDIM set, name it with {TOKEN} too")
-        jobs = [job.tile(number, tile_of) for number in udim_tiles(maps)]
-    found = []
-    with steps(len(jobs), quiet) as progress:
-        for number, one in enumerate(jobs):
-
-            def of_all(done: int, total: int, name: str, number: int = number) -> None:
-                progress.at(int(1000 * (number + done / total)), 1000 * len(jobs), name)
-
-            found.append(edit_file(one, of_all))
-    if quiet:
-        return
-    for one, result in zip(jobs, found, strict=True):
-        for text, clamped in zip(result.edits, result.clamped, strict=True):
-            share = f" ({100 * clamped / max(result.inside, 1):.0f} % of the mask)"
-            note = f", {clamped:,} texels clamped to range{share}" if clamped else ""
-            out.print(f"{text}{note}")
+    job = EditJob(
+        maps, output, options.edits(preset, changes), amount, mask, source,
+        light=None if illuminant is None else options.light_of(illuminant),
+        model=None if method is None else options.model_of("default", method),
+        space=options.space_of(output_colorspace, ocio),
+        save_maps=save_maps,
+    )  # fmt: skip
+    with bar(quiet) as progress:
+        found = job.run(progress)
+    for one in () if quiet else found:
+        for text, clamped in zip(one.edits, one.clamped, strict=True):
+            share = f" ({100 * clamped / max(one.inside, 1):.0f} % of the mask)"
+            out.say(text + (f", {clamped:,} texels clamped to range{share}" if clamped else ""))
         if illuminant is not None:
-            out.print(f"shown under {illuminant}")
-        out.print(f"{result.changed:,} texels changed; wrote {one.output}")
+            out.say(f"shown under {illuminant}")
+        out.say(f"{one.changed:,} texels changed; wrote {one.output}")

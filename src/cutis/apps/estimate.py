@@ -2,25 +2,28 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from cutis.apps import options
+from cutis.errors import CutisError
 
 if TYPE_CHECKING:
-    from cutis.jobs.sets import Outcome, Runner
+    from cutis.jobs.estimate import Estimated, EstimateJob
+
+Faces = Annotated[
+    list[str],
+    typer.Argument(
+        metavar="FACE...",
+        help="Albedo textures: PNG, JPEG, TIFF, TX, EXR, DPX, PSD; NAME.<UDIM>.EXT; a folder, "
+        "alone or with a pattern such as '*.exr'.",
+    ),
+]
 
 
 def estimate(
-    faces: Annotated[
-        list[str],
-        typer.Argument(
-            metavar="FACE...",
-            help="Albedo textures: PNG, JPEG, TIFF, TX, EXR, DPX, PSD; NAME.<UDIM>.EXT; a folder, "
-            "alone or with a pattern such as '*.exr'.",
-        ),
-    ],
+    faces: Faces,
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder for the results.")] = Path(
         "."
     ),
@@ -52,12 +55,8 @@ def estimate(
     jobs: Annotated[
         int, typer.Option("--jobs", "-j", min=1, max=256, help="Processes to work in.")
     ] = 1,
-    cluster: Annotated[
-        str | None, typer.Option(help="Dask scheduler to work on: tcp://host:8786.")
-    ] = None,
-    again: Annotated[
-        bool, typer.Option("--again", help="Also what is there already, made the same way.")
-    ] = False,
+    cluster: options.Cluster = None,
+    again: options.Again = False,
     quiet: options.Quiet = False,
 ) -> None:
     """Estimate skin maps of albedo textures.
@@ -69,132 +68,48 @@ def estimate(
 
     Example: cutis estimate show/ '*.exr' --jobs 4 -o out/
     """
-    from cutis.apps.console import out, steps
-    from cutis.colour import light_conversion
-    from cutis.errors import CutisError
-    from cutis.inverse import load_model, model_name
-    from cutis.jobs.estimate import Settings, Task
-    from cutis.jobs.inputs import capture_sets, companion, gaps, odd_ones
-    from cutis.jobs.sets import cluster as on_cluster
-    from cutis.jobs.sets import estimate_sets, here, processes
-    from cutis.textures import colour_space
-    from cutis.textures.ocio import configured
+    from dataclasses import replace
 
-    if method is not None:
-        if model != "default":
-            raise CutisError("give either --model or --method, not both")
-        model = options.method_name(method)
-    model = model_name(model)  # results of another default are not these
-    ocio = ocio or configured() or ""  # said to workers, who may have another $OCIO
-    settings = Settings(
-        white, exposure, illuminant, model, colorspace, ocio, output_colorspace, half, report,
-        device, not no_sigma,
+    from cutis.apps import estimate_words as words
+    from cutis.apps.console import bar
+    from cutis.jobs.estimate import CaptureFiles, EstimateJob
+    from cutis.jobs.inputs import capture_sets, companion
+    from cutis.jobs.runners import cluster as on_cluster
+    from cutis.jobs.runners import here, processes
+    from cutis.jobs.sets import estimate_sets
+
+    like = EstimateJob(
+        (CaptureFiles(Path()),), output, options.white_gains(white),
+        options.exposure_gain(exposure), options.light_of(illuminant),
+        options.model_of(model, method, device), options.source_space(colorspace, ocio),
+        options.space_of(output_colorspace, ocio), half, not no_sigma, report, again,
     )  # fmt: skip
-    # what is wrong with the flags is said now rather than after reading
-    light_conversion(illuminant)
-    options.white_gains(white), options.exposure_gain(exposure)
-    load_model(model, device)
-    for name in (None if colorspace == "auto" else colorspace, output_colorspace):
-        if name is not None:
-            colour_space(name, ocio)
-    sets = [
-        [
-            Task(face, companion(mask, face), output, settings, companion(regions, face))
-            for face in captures
-        ]
-        for captures in capture_sets(faces, udim, sequence)
-    ]
-    runner: Runner = here
+    sets = []
+    for captures in capture_sets(faces, udim, sequence):
+        files = (CaptureFiles(f, companion(mask, f), companion(regions, f)) for f in captures)
+        sets.append(replace(like, captures=tuple(files)))
+    runner = here if cluster is None and jobs == 1 else processes(jobs)
     if cluster is not None:
         runner = on_cluster(cluster)
-    elif jobs > 1:
-        runner = processes(jobs)
-    alone = len(sets) == 1 and len(sets[0]) == 1
-    with steps(1, quiet) as progress:
-        found = list(estimate_sets(sets, runner, again or alone, progress.at))
-    failed = [outcome for outcome in found if outcome.failure is not None]
-    if alone and failed:
-        raise CutisError(str(failed[0].failure))
+    with bar(quiet) as progress:
+        found = list(estimate_sets(sets, runner, progress))
     if not quiet:
-        for tasks in sets:
-            captures = tuple(task.face for task in tasks)
-            for name in gaps(captures):
-                out.print(f"{name} is missing between other tiles of its row")
-            for line in odd_ones(captures, colorspace, ocio):
-                out.print(line)
-        if alone:
-            assert found[0].report is not None
-            say(found[0].report, white)
-            out.print(f"wrote {sets[0][0].stem}.skin.exr and what belongs to it")
-        else:
-            say_all(found, output)
-    if failed:
-        listed = "; ".join(_line(outcome) for outcome in failed)
-        raise CutisError(f"{len(failed)} of {len(found)} failed: {listed}")
+        words.say(sets, found)
+    _fail(sets, found)
 
 
-def _line(outcome: "Outcome") -> str:
-    text = str(outcome.failure)
-    return text if outcome.face.name in text else f"{outcome.face}: {text}"
-
-
-def say_all(found: Sequence["Outcome"], output: Path) -> None:
-    """Prints a line for each capture of many."""
-    from cutis.apps.console import out
-
+def _fail(sets: "Sequence[EstimateJob]", found: "Sequence[Estimated]") -> None:
+    """CutisError that lists what failed, and what nobody has heard of."""
+    lines = []
     for outcome in found:
-        if outcome.report is not None:
-            colour = outcome.report.get("colour")
-            error = "no skin colours" if colour is None else (
-                f"ΔE00 {colour['delta_e_mean']:.3f}, "
-                f"out of gamut {100 * colour['out_of_gamut']:.1f} %"
-            )  # fmt: skip
-            out.print(f"{outcome.face.name}: {error}")
-    done = sum(outcome.report is not None for outcome in found)
-    skipped = sum(outcome.skipped for outcome in found)
-    left = f", {skipped} were there already" if skipped else ""
-    out.print(f"{done} of {len(found)} estimated into {output}{left}")
-
-
-def say(results: dict[str, Any], white: str = "none") -> None:
-    """Prints what was found in one capture."""
-    from cutis.apps.console import out, print_statistics
-    from cutis.report.trust_words import lines
-
-    gains = ", ".join(f"{g:.3f}" for g in results["calibration"]["gains"])
-    light = results["calibration"]["illuminant"]
-    out.print(f"colour space: {results['colorspace']}")
-    out.print(
-        f"gains {gains} ({results['calibration']['origin']}), model {results['model']}"
-        + (f", captured under {light}" if light != "D65" else "")
-    )
-    print_statistics(
-        (name, row["unit"], row["p5"], row["median"], row["p95"])
-        for name, row in results["maps"].items()
-    )
-    for key, what in (("below_0", "negative"), ("above_1", "above one")):
-        if results[key]:
-            out.print(f"{results[key]:,} texels have a colour {what}, which is no albedo")
-    colour = results.get("colour")
-    if colour is None:
-        out.print("no texel inside the mask has the colour of skin; check mask and colour space")
+        if outcome.failure is not None:
+            named = outcome.face.name in outcome.failure
+            lines.append(outcome.failure if named else f"{outcome.face}: {outcome.failure}")
+    total = sum(len(job.captures) for job in sets)
+    if total > len(found):
+        lines.append(f"{total - len(found)} captures were not done; run the same command again")
+    if not lines:
         return
-    share = results["skin_texels"] / results["masked_texels"]
-    out.print(
-        f"model against capture on {results['skin_texels']:,} skin texels (L* > 35, C*ab > 12; "
-        f"{100 * share:.1f} % of the mask): ΔE00 mean "
-        f"{colour['delta_e_mean']:.3f}, 95 % {colour['delta_e_p95']:.3f}, "
-        f"out of gamut {100 * colour['out_of_gamut']:.1f} %, ITA {colour['ita_median']:.0f}°"
-    )
-    told = list(lines(results["maps"], results.get("low_confidence")))
-    for line in told:
-        out.print(line)
-    if not told:
-        out.print(
-            "On skin colours RGB fixes melanin and blood well, thickness less, and says little of "
-            "eumelanin and oxygenation."
-        )
-    if share < 0.2:
-        out.print("That is a small part of the mask: darker texels are not in these numbers.")
-    if colour["out_of_gamut"] > 0.05 and white != "auto":
-        out.print("Many texels are out of gamut: try --white auto, or a tighter --mask.")
+    if total == 1:
+        raise CutisError(lines[0])
+    raise CutisError(f"{len(lines)} of {total} failed: {'; '.join(lines)}")

@@ -7,14 +7,14 @@ import typer
 
 from cutis.apps import options
 
-TABLES = (".csv", ".tsv", ".txt")
 
-
+@options.parameter_values
 def fit(
     spectra: Annotated[
         Path,
         typer.Argument(help="CSV of spectra, or a cube: ENVI .hdr, spectral .exr, .npy."),
     ],
+    values: options.Values,
     output: Annotated[
         Path | None,
         typer.Option("--output", "-o", help="CSV, or for a cube maps, NAME.skin.exr."),
@@ -48,14 +48,6 @@ def fit(
         float | None,
         typer.Option("--noise", help="Standard deviation of a reflectance; else the residual's."),
     ] = None,
-    melanin: options.Melanin = None,
-    blood: options.Blood = None,
-    thickness: options.Thickness = None,
-    eumelanin: options.Eumelanin = None,
-    oxygenation: options.Oxygenation = None,
-    bilirubin: options.Bilirubin = None,
-    carotene: options.Carotene = None,
-    methaemoglobin: options.Methaemoglobin = None,
     free: Annotated[
         list[str] | None,
         typer.Option(
@@ -66,6 +58,9 @@ def fit(
     correlations: Annotated[
         bool, typer.Option("--correlations", help="Columns of correlations between parameters.")
     ] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Keep the result also where it looks like no skin.")
+    ] = False,
     quiet: options.Quiet = False,
 ) -> None:
     """Parameters of skin from measured reflectance spectra, each with its standard deviation.
@@ -75,37 +70,17 @@ def fit(
 
     Example: cutis fit spectra.csv --specular 0.028 --range 400,700 -o skins.csv
     """
-    from cutis.jobs.fit import Request, fit_cube, fit_table
+    from cutis.apps.console import bar, err
+    from cutis.jobs.fit import FitJob
 
-    flags = {
-        "melanin": melanin,
-        "blood": blood,
-        "thickness": thickness,
-        "eumelanin": eumelanin,
-        "oxygenation": oxygenation,
-        "bilirubin": bilirubin,
-        "carotene": carotene,
-        "methaemoglobin": methaemoglobin,
-    }
-    held = {name: value for name, value in flags.items() if value is not None}
-    low, high = _range(wavelength_range)
-    request = Request(
-        spectra, output, specular, low, high, scale, noise, held, quiet, tissue, shift,
-        tuple(free or ()),
+    low, high = options.wavelength_range(wavelength_range)
+    job = FitJob(
+        spectra, output, options.tissue_of(tissue), specular, shift, low, high, wavelengths, scale,
+        noise, values, tuple(free or ()), correlations, force,
     )  # fmt: skip
-    if spectra.suffix.lower() in TABLES:
-        fit_table(request, correlations)
-    else:
-        fit_cube(request, wavelengths)
-
-
-def _range(text: str) -> tuple[float, float]:
-    from cutis.errors import CutisError
-
-    try:
-        low, high = (float(part) for part in text.split(","))
-    except ValueError:
-        low, high = 1.0, 0.0
-    if not 0 < low < high:
-        raise CutisError(f"--range takes two wavelengths in nm like 400,700, not {text!r}")
-    return low, high
+    with bar(quiet) as progress:
+        found = job.run(progress)
+    if found.table is not None:
+        typer.echo(found.table, nl=False)
+    for note in () if quiet else (*found.notes, found.summary):
+        err.say(f"{spectra.name}: {note}")  # results may go to stdout

@@ -1,7 +1,9 @@
 """The command line: `cutis COMMAND --help`."""
 
 import os
+import signal
 import sys
+import threading
 from typing import Annotated, NoReturn
 
 import typer
@@ -19,7 +21,7 @@ from cutis.apps import (
     spectrum,
     train,
 )
-from cutis.errors import CutisError
+from cutis.errors import CutisError, printable
 
 app = typer.Typer(
     name="cutis",
@@ -70,15 +72,25 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):  # Δ and × do not fit every terminal
             stream.reconfigure(errors="replace")
+    code: int | None = 0
     try:
+        if sys.stdout is None:
+            raise CutisError("standard output is closed, so that nothing can be said; open it")
+        _end_like_interrupts()
         arguments = None if sys.argv[1:] else ["--help"]
         code = app(arguments, prog_name="cutis", standalone_mode=False)
+        sys.stdout.flush()
     except CutisError as error:
         _fail(str(error))
+    except _Ended as error:
+        _fail(f"ended by {error}; files already written are whole", 128 + error.number)
     except KeyboardInterrupt:
         code = INTERRUPTED
     except MemoryError:
         _fail("not enough memory; use a smaller texture or a machine with more")
+    except BrokenPipeError:  # whoever read the output has gone
+        sys.stderr.close()
+        raise SystemExit(1) from None
     except OSError as error:
         _fail(f"{error.filename or 'file system'}: {error.strerror or error}")
     except Exception as error:
@@ -94,6 +106,27 @@ def main() -> None:
     raise SystemExit(code)
 
 
+class _Ended(KeyboardInterrupt):
+    """A signal that asked the process to end, which it does as for Ctrl-C."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(signal.Signals(number).name)
+        self.number = number
+
+
+def _end_like_interrupts() -> None:
+    """What a system or a closed terminal sends ends the work as Ctrl-C does: cleaned up."""
+
+    def end(number: int, _: object) -> NoReturn:
+        signal.signal(number, signal.SIG_IGN)  # asked once is enough
+        raise _Ended(number)
+
+    if threading.current_thread() is threading.main_thread():
+        for name in ("SIGTERM", "SIGHUP"):
+            if hasattr(signal, name) and signal.getsignal(getattr(signal, name)) is signal.SIG_DFL:
+                signal.signal(getattr(signal, name), end)
+
+
 def _fail(message: str, code: int = 1) -> NoReturn:
-    print(f"cutis: {' '.join(message.split())}", file=sys.stderr)
+    print(f"cutis: {printable(message)}", file=sys.stderr)
     raise SystemExit(code)

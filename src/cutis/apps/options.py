@@ -1,16 +1,22 @@
-"""Flags that mean the same in every command."""
+"""Flags that mean the same in every command, and how their texts are understood."""
 
-import contextlib
-from collections.abc import Iterator, Mapping, Sequence
+import functools
+import inspect
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
 from cutis.errors import CutisError
 
 if TYPE_CHECKING:
+    from cutis.colour import Light, Space
+    from cutis.inverse import Model
+    from cutis.inverse.calibration import Exposure as ExposureValue
+    from cutis.inverse.calibration import White as WhiteValue
     from cutis.maps import Edit
+    from cutis.optics import Tissue
 
 Mask = Annotated[
     Path | None, typer.Option("--mask", help="Grey image, white where it applies, same size.")
@@ -23,8 +29,8 @@ ModelName = Annotated[
     str,
     typer.Option(
         "--model",
-        help="default, measured2026, aliaga2022-exact, aliaga2022, kubelka-munk, or a .safetensors "
-        "file of weights.",
+        help="default, measured2026, aliaga2022-exact, aliaga2022, kubelka-munk, one that another "
+        "package brings, or a .safetensors file of weights.",
     ),
 ]
 Method = Annotated[
@@ -39,27 +45,6 @@ Illuminant = Annotated[
         "spectrum.",
     ),
 ]
-Melanin = Annotated[
-    float | None, typer.Option("--melanin", help="Melanosome volume fraction, 0.001-1.")
-]
-Blood = Annotated[float | None, typer.Option("--blood", help="Blood volume fraction, 0.001-1.")]
-Thickness = Annotated[
-    float | None, typer.Option("--thickness", help="Epidermal thickness, 10-250 µm.")
-]
-Eumelanin = Annotated[float | None, typer.Option("--eumelanin", help="Eumelanin share of melanin.")]
-Oxygenation = Annotated[
-    float | None, typer.Option("--oxygenation", help="Oxygenated share of haemoglobin.")
-]
-Bilirubin = Annotated[
-    float | None, typer.Option("--bilirubin", help="Bilirubin in the dermis, 0-0.2 g/L.")
-]
-Carotene = Annotated[
-    float | None, typer.Option("--carotene", help="β-carotene in the epidermis, 0-0.05 g/L.")
-]
-Methaemoglobin = Annotated[
-    float | None,
-    typer.Option("--methaemoglobin", help="Share of haemoglobin that is methaemoglobin, 0-0.7."),
-]
 TissueName = Annotated[
     str,
     typer.Option("--tissue", help="measured2026, fitted to measured skin, or aliaga2022."),
@@ -73,7 +58,17 @@ Skins = Annotated[
     Path | None,
     typer.Argument(help="CSV of skins, a column per parameter; missing ones are typical."),
 ]
+Source = Annotated[
+    Path | None, typer.Option("--source", help="The capture, if it is not where the maps say.")
+]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
+Again = Annotated[
+    bool,
+    typer.Option("--again", help="Also what is there already, and what was made with other flags."),
+]
+Cluster = Annotated[
+    str | None, typer.Option("--cluster", help="Dask scheduler to work on: tcp://host:8786.")
+]
 Colorspace = Annotated[
     str,
     typer.Option(
@@ -97,77 +92,165 @@ Ocio = Annotated[
     ),
 ]
 
-
-def _change(name: str, meaning: str) -> typer.models.OptionInfo:
-    return typer.Option(
-        f"--{name}", help=f"{meaning}: a value, a factor (x1.5) or an offset (+0.1)."
-    )
-
-
-MelaninChange = Annotated[str | None, _change("melanin", "Melanosome volume fraction")]
-BloodChange = Annotated[str | None, _change("blood", "Blood volume fraction")]
-ThicknessChange = Annotated[str | None, _change("thickness", "Epidermal thickness in µm")]
-EumelaninChange = Annotated[str | None, _change("eumelanin", "Eumelanin share of melanin")]
-OxygenationChange = Annotated[str | None, _change("oxygenation", "Oxygenated share of haemoglobin")]
-BilirubinChange = Annotated[str | None, _change("bilirubin", "Bilirubin in the dermis in g/L")]
-CaroteneChange = Annotated[str | None, _change("carotene", "β-carotene in the epidermis in g/L")]
-MethaemoglobinChange = Annotated[
-    str | None, _change("methaemoglobin", "Methaemoglobin share of haemoglobin")
-]
+Values = dict[str, float]
+"""What the flags of `parameter_values` gave, by name."""
+Changes = dict[str, str]
+"""What the flags of `parameter_changes` gave, by name."""
 
 
-def edits(presets: Sequence[str] | None, flags: Mapping[str, str | None]) -> "list[Edit]":
+def parameter_values(command: Callable[..., None]) -> Callable[..., None]:
+    """Gives a command, in place of its argument `values`, a flag for each parameter of a skin."""
+    return _with_flags(command, "values", float, _value_help)
+
+
+def parameter_changes(command: Callable[..., None]) -> Callable[..., None]:
+    """The same in place of `changes`: a value, a factor (x1.5) or an offset (+0.1) for each."""
+    return _with_flags(command, "changes", str, _change_help)
+
+
+def _with_flags(
+    command: Callable[..., None], slot: str, kind: type, help_of: Callable[[Any], str]
+) -> Callable[..., None]:
+    from cutis.optics.parameters import PARAMETERS, RARE
+
+    known = (*PARAMETERS, *RARE)
+    signature = inspect.signature(command)
+
+    @functools.wraps(command)
+    def wrapped(**arguments: Any) -> None:
+        given = {p.name: arguments.pop(p.name) for p in known}
+        found = {name: value for name, value in given.items() if value is not None}
+        command(**arguments, **{slot: found})
+
+    flags = []
+    for p in known:
+        typed: Any = Annotated[kind | None, typer.Option(f"--{p.name}", help=help_of(p))]
+        how = inspect.Parameter.KEYWORD_ONLY
+        flags.append(inspect.Parameter(p.name, how, default=None, annotation=typed))
+    parameters: list[inspect.Parameter] = []
+    for one in signature.parameters.values():
+        new = flags if one.name == slot else [one]
+        parameters += [p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in new]
+    wrapped.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
+    wrapped.__annotations__ = {p.name: p.annotation for p in parameters}
+    del wrapped.__wrapped__
+    return wrapped
+
+
+def _value_help(known: Any) -> str:
+    unit = "" if known.unit == "1" else f" {known.unit}"
+    return f"{known.meaning[:1].upper()}{known.meaning[1:]}, {known.low:g}-{known.high:g}{unit}."
+
+
+def _change_help(known: Any) -> str:
+    unit = "" if known.unit == "1" else f" in {known.unit}"
+    meaning = f"{known.meaning[:1].upper()}{known.meaning[1:]}{unit}"
+    return f"{meaning}: a value, a factor (x1.5) or an offset (+0.1)."
+
+
+# texts, understood once ---------------------------------------------------------------------------
+
+
+def edits(presets: Sequence[str] | None, changes: Mapping[str, str]) -> "tuple[Edit, ...]":
     """The edits of --preset, in the order given, then those of parameter flags by name."""
     from cutis.maps import parse_edit
     from cutis.maps.presets import preset as named
 
     found = [change for name in presets or [] for change in named(name)]
-    found += [parse_edit(name, text) for name, text in flags.items() if text is not None]
+    found += [parse_edit(name, text) for name, text in changes.items()]
+    return tuple(found)
+
+
+def white_gains(text: str) -> "WhiteValue":
+    """The value of --white."""
+    if text in ("auto", "none"):
+        return "auto" if text == "auto" else "none"
+    red, green, blue = _numbers(text, "white", 3)
+    return (red, green, blue)
+
+
+def exposure_gain(text: str) -> "ExposureValue":
+    """The value of --exposure."""
+    if text in ("auto", "none"):
+        return "auto" if text == "auto" else "none"
+    return _numbers(text, "exposure", 1)[0]
+
+
+def model_of(name: str, method: str | None = None, device: str = "cpu") -> "Model":
+    """The model of --model, or of --method."""
+    from cutis.inverse.lookup import SHAPES
+    from cutis.maps import load_model
+
+    if method is None:
+        return load_model(name, device)
+    if method not in SHAPES:
+        raise CutisError(f"--method must be {' or '.join(SHAPES)}, not {method!r}")
+    if name != "default":
+        raise CutisError("give either --model or --method, not both")
+    return load_model(method, device)
+
+
+def light_of(name: str) -> "Light":
+    """The light of --illuminant, which a capture can be balanced on."""
+    from cutis.colour import light, light_conversion
+
+    found = light(name)
+    light_conversion(found)
     return found
 
 
-def white_gains(text: str) -> Literal["none", "auto"] | Sequence[float]:
-    """The value of --white."""
-    return "auto" if text == "auto" else "none" if text == "none" else _numbers(text, "white", 3)
+def space_of(name: str | None, ocio: str | None) -> "Space | None":
+    """The space of a name; None where none is given."""
+    from cutis.textures import colour_space
+
+    return None if name is None else colour_space(name, ocio)
 
 
-def exposure_gain(text: str) -> Literal["none", "auto"] | float:
-    """The value of --exposure."""
-    return (
-        "auto" if text == "auto" else "none" if text == "none" else _numbers(text, "exposure", 1)[0]
-    )
+def source_space(name: str, ocio: str | None) -> "Space | None":
+    """The space of --colorspace; None for what the file says."""
+    return None if name == "auto" else space_of(name, ocio)
 
 
-def method_name(text: str) -> str:
-    """The value of --method, as the name of a model."""
-    from cutis.inverse.lookup import SHAPES
+def tissue_of(name: str) -> "Tissue":
+    """The tissue of --tissue."""
+    from cutis.optics import tissue_named
 
-    if text not in SHAPES:
-        raise CutisError(f"--method must be {' or '.join(SHAPES)}, not {text!r}")
-    return text
+    return tissue_named(name)
 
 
-def make_folder(folder: Path) -> None:
-    """Makes the folder of the results; CutisError where that cannot be."""
+def wavelength_range(text: str) -> tuple[float, float]:
+    """The value of --range."""
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        reason = error.strerror or str(error)
-        raise CutisError(f"{folder}: cannot make this folder ({reason.lower()})") from error
+        low, high = (float(part) for part in text.split(","))
+    except ValueError:
+        low, high = 1.0, 0.0
+    if not 0 < low < high:
+        raise CutisError(f"--range takes two wavelengths in nm like 400,700, not {text!r}")
+    return low, high
 
 
-@contextlib.contextmanager
-def made_folder(folder: Path) -> Iterator[None]:
-    """The same; folders that it made go again if the block fails and leaves them empty."""
-    new = [one for one in (folder, *folder.parents) if not one.exists()]
-    make_folder(folder)
+def sizes(text: str, name: str) -> tuple[int, ...]:
+    """The value of --grid or --tensor."""
     try:
-        yield
-    except BaseException:
-        with contextlib.suppress(OSError):
-            for one in new:
-                one.rmdir()
-        raise
+        return tuple(int(part) for part in text.split(","))
+    except ValueError:
+        raise CutisError(
+            f"--{name} takes five whole numbers like 8,8,3,1,1, not {text!r}"
+        ) from None
+
+
+def incidence(text: str) -> float | Literal["lambertian"] | str:
+    """The value of --incidence."""
+    from cutis.transport.quadrature import beam_cosine
+
+    try:
+        value: float | str = "lambertian" if text == "lambertian" else float(text)
+    except ValueError:
+        raise CutisError(
+            f"--incidence takes lambertian or the cosine of a beam, not {text!r}"
+        ) from None
+    beam_cosine(value)
+    return value
 
 
 def _numbers(text: str, name: str, count: int) -> list[float]:

@@ -1,14 +1,19 @@
 """`cutis render`: maps or albedo in, path-traced pictures out."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from cutis.apps import options
 
+if TYPE_CHECKING:
+    from cutis.render.frames import Frame
 
+
+@options.parameter_changes
 def render(
+    changes: options.Changes,
     skin: Annotated[
         Path | None,
         typer.Argument(
@@ -27,17 +32,10 @@ def render(
         ),
     ] = "sphere",
     light: Annotated[str, typer.Option(help="studio, sun or interior.")] = "studio",
-    melanin: options.MelaninChange = None,
-    blood: options.BloodChange = None,
-    thickness: options.ThicknessChange = None,
-    eumelanin: options.EumelaninChange = None,
-    oxygenation: options.OxygenationChange = None,
     preset: options.Presets = None,
     amount: options.Amount = 1.0,
     mask: options.Mask = None,
-    source: Annotated[
-        Path | None, typer.Option(help="The capture, if it is not where the maps say.")
-    ] = None,
+    source: options.Source = None,
     model_only: Annotated[
         bool, typer.Option("--model-only", help="What the model alone gives, without the capture.")
     ] = False,
@@ -74,14 +72,12 @@ def render(
         tuple[str, str] | None,
         typer.Option(
             metavar="PARAMETER RANGE",
-            help="An edit from frame to frame: melanin 0.5..3 (factors), blood +0..0.05, "
-            "oxygenation =0.1..0.9.",
+            help="An edit from frame to frame: melanin x0.5..3 (factors), blood +0..0.05, "
+            "oxygenation 0.1..0.9 (values).",
         ),
     ] = None,
     frames: Annotated[int, typer.Option(help="Pictures of an edit sweep.")] = 12,
-    again: Annotated[
-        bool, typer.Option("--again", help="Also pictures of a sequence that are there already.")
-    ] = False,
+    again: options.Again = False,
     export: Annotated[
         Path | None,
         typer.Option(
@@ -105,46 +101,23 @@ def render(
 
     Example: cutis render out/face.skin.exr --mesh head.obj --melanin x1.5 -o tanned.png
     """
-    from dataclasses import replace
-
-    from cutis.apps.console import out, steps
+    from cutis.apps.console import bar, out
     from cutis.errors import CutisError
-    from cutis.jobs.render import RADII, Order, check_fit, export_to, render_pictures
-    from cutis.render.blender import find_blender
-    from cutis.render.blender_install import install as install_blender
-    from cutis.render.frames import Frame
-    from cutis.render.frames import edit_sweep as sweep_of
-    from cutis.render.frames import turntable as turntable_of
-    from cutis.render.heads import credits_of, heads
+    from cutis.jobs.render import MaterialJob, RenderJob, Subject
+    from cutis.render.heads import heads
     from cutis.render.scene import MESHES, Scene
-    from cutis.textures import TextureFile, format_of
 
     if install:
-        with steps(1, quiet) as progress:
-            python = install_blender(say=lambda text: progress.at(0, 1, text))
-        if not quiet:
-            out.print(f"Blender is installed: {python}")
+        _install(quiet)
         return
     head = {each.name: each for each in heads()}.get(mesh)
-    if skin is None:
-        if head is None:
-            raise CutisError(
-                "give maps (NAME.skin.exr) or an albedo texture to render, or a bundled head: "
-                "--mesh makehuman"
-            )
-        skin = head.albedo
-    if output is None:
-        output = Path(f"{skin.name.removesuffix('.skin.exr').partition('.')[0]}.render.png")
-    format_of(output)
-    if radius not in RADII:
-        raise CutisError(f"--radius must be {' or '.join(RADII)}, not {radius!r}")
-    if turntable is not None and edit_sweep is not None:
-        raise CutisError("--turntable and --edit-sweep are two sequences; render one at a time")
-    sequence: tuple[Frame, ...] = ()
-    if turntable is not None:
-        sequence = tuple(turntable_of(turntable))
-    elif edit_sweep is not None:
-        sequence = tuple(sweep_of(*edit_sweep, frames))
+    if skin is None and head is None:
+        raise CutisError(
+            "give maps (NAME.skin.exr) or an albedo texture to render, or a bundled head: "
+            "--mesh makehuman"
+        )
+    shown = skin if skin is not None or head is None else head.albedo
+    assert shown is not None
     surface = Path(mesh) if mesh not in MESHES else mesh
     scene = Scene(
         mesh=surface if head is None else head.mesh,
@@ -155,42 +128,51 @@ def render(
         centre=(0.5, 0.5) if head is None else head.centre,
         roughness=0.5 if roughness is None else roughness,
     )  # fmt: skip
-    flags = {
-        "melanin": melanin,
-        "blood": blood,
-        "thickness": thickness,
-        "eumelanin": eumelanin,
-        "oxygenation": oxygenation,
-    }
-    order = Order(
-        skin, output, scene,
-        edits=tuple(options.edits(preset, flags)),
-        amount=amount, paint=mask, source=source, model_only=model_only, colorspace=colorspace,
-        ocio=ocio, radius=radius, frames=sequence, again=again,
+    subject = Subject(
+        shown, scene, options.edits(preset, changes), amount, mask, source, model_only,
+        options.source_space(colorspace, ocio), radius, head,
     )  # fmt: skip
-    with order.opened() as opened:
-        order = replace(order, credits=credits_of(scene.mesh, *opened.origins()))
-    if head is not None:
-        with TextureFile(head.albedo) as texture:
-            check_fit(order, texture.shape[1] / texture.shape[0], head.name)
     if export is not None:
-        with steps(1, quiet) as progress:
-            files = export_to(order, export, blender, progress.at)
-        if not quiet:
-            for line in order.credits:
-                out.print(f"credit: {line}")
-            out.print(f"wrote {', '.join(file.name for file in files)} into {export}")
-        return
-    found = find_blender(blender)
-    with steps(1, quiet) as progress:
-        result = render_pictures(order, found, progress.at)
-    if quiet:
-        return
-    for line in order.credits:
-        out.print(f"credit: {line}")
-    if result.there:
-        out.print(f"{len(result.there)} pictures were there already")
-    if result.animation is not None:
-        out.print(f"wrote {len(result.written)} pictures and {result.animation}")
+        with bar(quiet) as progress:
+            made = MaterialJob(subject, export, blender).run(progress)
+        said = [f"wrote {', '.join(file.name for file in made.files)} into {export}"]
+        credits = made.credits
     else:
-        out.print(f"wrote {result.written[0]}")
+        name = f"{shown.name.removesuffix('.skin.exr').partition('.')[0]}.render.png"
+        sequence = _frames(turntable, edit_sweep, frames)
+        job = RenderJob(subject, output or Path(name), sequence, again, blender)
+        with bar(quiet) as progress:
+            done = job.run(progress)
+        credits, said = done.credits, []
+        if done.there:
+            said.append(f"{len(done.there)} pictures were there already")
+        if done.animation is not None:
+            said.append(f"wrote {len(done.written)} pictures and {done.animation}")
+        else:
+            said.append(f"wrote {done.written[0]}")
+    for line in () if quiet else (*(f"credit: {one}" for one in credits), *said):
+        out.say(line)
+
+
+def _install(quiet: bool) -> None:
+    from cutis.apps.console import bar, out
+    from cutis.render.blender_install import install
+
+    with bar(quiet) as progress:
+        python = install(say=lambda text: progress(0, 1, text))
+    if not quiet:
+        out.say(f"Blender is installed: {python}")
+
+
+def _frames(
+    turntable: int | None, edit_sweep: tuple[str, str] | None, count: int
+) -> "tuple[Frame, ...]":
+    """The frames of --turntable or --edit-sweep."""
+    from cutis.errors import CutisError
+    from cutis.render import frames
+
+    if turntable is not None and edit_sweep is not None:
+        raise CutisError("--turntable and --edit-sweep are two sequences; render one at a time")
+    if turntable is not None:
+        return tuple(frames.turntable(turntable))
+    return () if edit_sweep is None else tuple(frames.edit_sweep(*edit_sweep, count))

@@ -4,13 +4,22 @@ The functions take turns, so that whatever else the machine does meets all of th
 """
 
 import gc
+import math
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+Step: TypeAlias = Callable[[NDArray[np.float32]], object]
 
 STATUS, CLEAR = Path("/proc/self/status"), Path("/proc/self/clear_refs")
 
@@ -40,16 +49,30 @@ class Timed:
         return float(np.median(self.seconds))
 
 
-def race(entries: Sequence[Timed], repeats: int) -> Iterator[Timed]:
+def pair(
+    system: str, encode: Step, decode: Step, rgb: NDArray[np.float32], skins: NDArray[np.float32]
+) -> list[Timed]:
+    """Encoding of colours (n, 3) and decoding of skins (n, 5) by one system."""
+    moved = rgb.nbytes + skins.nbytes
+    return [
+        Timed(system, "encode", lambda: encode(rgb), moved),
+        Timed(system, "decode", lambda: decode(skins), moved),
+    ]
+
+
+def race(entries: Sequence[Timed], repeats: int, seconds: float = math.inf) -> Iterator[Timed]:
     """Runs every entry once for its memory, untimed, then all of them `repeats` times in turns.
 
-    Yields each entry before it runs.
+    No round but the first begins after so many seconds. Yields each entry before it runs.
     """
     for entry in entries:
         yield entry
         entry.run()  # compiles, and lets pools of memory and threads come to be
         entry.peak = peak_memory(entry.run)
-    for _ in range(repeats):
+    end = time.monotonic() + seconds
+    for turn in range(repeats):
+        if turn and time.monotonic() >= end:
+            return
         for entry in entries:
             yield entry
             gc.collect()
@@ -75,7 +98,63 @@ def _resident(name: str) -> int:
     return int(lines[name].split()[0]) * 1024
 
 
-def copy_bandwidth(threads: int, repeats: int = 7, size: int = 1 << 28) -> float:
+def table(entries: Sequence[Timed], bandwidth: float, rivals: Sequence[str] = ()) -> "Table":
+    """Times, memory, and ratios: to the fastest of `rivals`, and to the floor, copying memory."""
+    from rich.table import Table
+
+    by_system: dict[str, list[Timed]] = {}
+    for entry in entries:
+        by_system.setdefault(entry.system, []).append(entry)
+    rival = fastest(entries, rivals)
+    theirs = {e.step: e.best for e in by_system.get(rival or "", [])}
+    result = Table(box=None)
+    headings = ["", "", "best", "median", *(["ratio"] if rival else []), "copying", "memory"]
+    for heading in headings:
+        result.add_column(heading, justify="right" if heading else "left", no_wrap=True)
+
+    def add(system: str, step: str, best: float, their: float | None, *rest: str) -> None:
+        ratio = f"{their / best:.2f}" if their else ""
+        cells = [system, step, f"{best:.3f} s", *rest]
+        if rival:
+            cells.insert(4, ratio)
+        result.add_row(*cells)
+
+    for system, own in by_system.items():
+        for entry in own:
+            add(
+                system if entry is own[0] else "", entry.step, entry.best, theirs.get(entry.step),
+                f"{entry.median:.3f} s", f"{100 * entry.moved / bandwidth / entry.best:.1f} %",
+                "" if entry.peak is None else f"{entry.peak / 1e6:.0f} MB",
+            )  # fmt: skip
+        if {e.step for e in own} == {"encode", "decode"}:
+            total = sum(e.best for e in own)
+            add("", "both", total, sum(theirs.values()) or None, "", "", "")
+    return result
+
+
+def fastest(entries: Sequence[Timed], systems: Sequence[str]) -> str | None:
+    """Of some systems, the one that takes least for all of its steps; None if none was timed."""
+    totals = {
+        system: sum(entry.best for entry in entries if entry.system == system) for system in systems
+    }
+    return min((s for s in systems if totals[s]), key=totals.__getitem__, default=None)
+
+
+@contextmanager
+def announced(quiet: bool) -> Iterator[Callable[[str], None]]:
+    """Says what is going on: in one line that changes, or line by line where no terminal is."""
+    from cutis.apps.console import err
+
+    if quiet:
+        yield lambda text: None
+    elif err.is_terminal:
+        with err.status("") as status:
+            yield status.update
+    else:
+        yield err.print
+
+
+def copy_bandwidth(threads: int, repeats: int = 7, size: int = 1 << 27) -> float:
     """Bytes per second, read and written, of copying `size` bytes by all threads."""
     source, target = np.ones(size // 4, np.float32), np.empty(size // 4, np.float32)
     parts = list(zip(np.array_split(source, threads), np.array_split(target, threads), strict=True))

@@ -1,7 +1,8 @@
 """Spectrum ↔ RGB: observers, illuminants, transfer function, colour differences."""
 
 from cutis.colour.difference import delta_e, is_skin_colour, ita, lab
-from cutis.colour.observer import illuminant
+from cutis.colour.light import Light, light
+from cutis.colour.observer import LightLike, illuminant
 from cutis.colour.spaces import LINEAR, SPACES, SRGB, RGBSpace, Space, rgb_space
 from cutis.colour.spectra import reflectance_to_rgb, spectrum_to_rgb, spectrum_to_xyz
 from cutis.colour.transfer import decode_srgb, encode_srgb
@@ -11,6 +12,8 @@ __all__ = [
     "LINEAR",
     "SPACES",
     "SRGB",
+    "Light",
+    "LightLike",
     "RGBSpace",
     "Space",
     "decode_srgb",
@@ -20,6 +23,7 @@ __all__ = [
     "is_skin_colour",
     "ita",
     "lab",
+    "light",
     "light_conversion",
     "mallett_basis",
     "reflectance_to_rgb",

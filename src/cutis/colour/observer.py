@@ -3,6 +3,7 @@
 import difflib
 import re
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,14 +23,28 @@ def colour_matching() -> NDArray[np.float64]:
     return np.stack([table["x"], table["y"], table["z"]], axis=-1)
 
 
-def illuminant(name: str) -> NDArray[np.float64]:
+class Spectrum(Protocol):
+    """A light that was read already (`light.Light`)."""
+
+    @property
+    def power(self) -> NDArray[np.float64]:
+        """(81,) relative spectral power."""
+
+
+LightLike = str | Spectrum
+"""A name or file that `illuminant` takes, or a light that was read."""
+
+
+def illuminant(name: LightLike) -> NDArray[np.float64]:
     """(81,) relative spectral power of a light.
 
     `name` is a CIE illuminant in either case (A, D65, FL11 or F11, FL3.5, HP1, LED-B3, …), a CIE
     daylight of another temperature (D93: 9300 K), D65-prime (also D65'), or a file that
     `read_light` takes.
-    Raises CutisError for anything else.
+    Raises CutisError for anything else. A `Light` gives its power.
     """
+    if not isinstance(name, str):
+        return name.power
     plain = name.strip().lower()
     plain = re.sub(r"^f(?=\d)", "fl", plain)
     plain = "d65-prime" if plain in ("d65'", "d65′", "d65prime") else plain

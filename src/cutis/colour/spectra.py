@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cutis.colour.observer import colour_matching, illuminant, wavelengths
+from cutis.colour.observer import LightLike, colour_matching, illuminant, wavelengths
 from cutis.errors import CutisError
 
 XYZ_TO_SRGB = np.array(
@@ -23,7 +23,7 @@ XYZ_TO_SRGB = np.array(
 [iec61966]."""
 
 
-def spectrum_to_xyz(wavelength: ArrayLike, light: str = "D65") -> NDArray[np.float64]:
+def spectrum_to_xyz(wavelength: ArrayLike, light: LightLike = "D65") -> NDArray[np.float64]:
     """(n, 3) matrix that turns reflectance at `wavelength` (n,) nm into XYZ, Y of white = 1.
 
     `light` is a name or file for `illuminant`. The spectrum is taken as piecewise linear between
@@ -46,7 +46,7 @@ LEAST_WHITE = 1e-5
 """Of Y = 1; a light with less red, green or blue than this cannot be balanced on."""
 
 
-def spectrum_to_rgb(wavelength: ArrayLike, light: str = "D65") -> NDArray[np.float64]:
+def spectrum_to_rgb(wavelength: ArrayLike, light: LightLike = "D65") -> NDArray[np.float64]:
     """(n, 3) matrix that turns reflectance at `wavelength` (n,) nm into linear sRGB.
 
     Raises CutisError for lights, such as a sodium line, whose white is no mix of sRGB's primaries.
@@ -62,7 +62,7 @@ def spectrum_to_rgb(wavelength: ArrayLike, light: str = "D65") -> NDArray[np.flo
 
 
 def reflectance_to_rgb(
-    reflectance: ArrayLike, wavelength: ArrayLike, light: str = "D65"
+    reflectance: ArrayLike, wavelength: ArrayLike, light: LightLike = "D65"
 ) -> NDArray[np.float64]:
     """(..., n) reflectance in [0, 1] at (n,) nm → (..., 3) linear sRGB; white gives (1, 1, 1)."""
     return np.asarray(reflectance) @ spectrum_to_rgb(wavelength, light)

@@ -9,7 +9,7 @@ light to light is a 3 × 3 matrix, and white stays white.
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cutis.colour.observer import illuminant, wavelengths
+from cutis.colour.observer import LightLike, illuminant, wavelengths
 from cutis.colour.spectra import spectrum_to_rgb
 from cutis.optics.tables import packaged_table
 
@@ -20,7 +20,7 @@ def mallett_basis() -> NDArray[np.float64]:
     return np.stack([table["red"], table["green"], table["blue"]], axis=-1)
 
 
-def upsample(rgb: ArrayLike, light: str = "D65") -> NDArray[np.float64]:
+def upsample(rgb: ArrayLike, light: LightLike = "D65") -> NDArray[np.float64]:
     """(..., 3) linear sRGB, white-balanced under `light` → (..., 81) reflectance every 5 nm.
 
     Under `light` the reflectance has the given colour again; for very saturated colours under
@@ -31,7 +31,7 @@ def upsample(rgb: ArrayLike, light: str = "D65") -> NDArray[np.float64]:
     return shares @ basis.T
 
 
-def light_conversion(source: str, target: str = "D65") -> NDArray[np.float64]:
+def light_conversion(source: LightLike, target: LightLike = "D65") -> NDArray[np.float64]:
     """(3, 3) matrix C: linear sRGB white-balanced under `source` → under `target`, rgb @ C.T."""
     if np.array_equal(illuminant(source), illuminant(target)):
         return np.eye(3)

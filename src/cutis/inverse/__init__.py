@@ -3,16 +3,20 @@
 from cutis.inverse.calibration import Calibration, calibrate
 from cutis.inverse.fit import explain, fit
 from cutis.inverse.metamers import Family, colours_under, metamers, spread
-from cutis.inverse.models import MODELS, Model, load_model, model_name, on_device, tissue_of
+from cutis.inverse.model import Found, Model, ModelSurvey, Survey
+from cutis.inverse.registry import MODELS, load_model, model_names, register
 from cutis.inverse.spectral_fit import SpectralFit, SpectralFitter, fit_spectra
 
 __all__ = [
     "MODELS",
     "Calibration",
     "Family",
+    "Found",
     "Model",
+    "ModelSurvey",
     "SpectralFit",
     "SpectralFitter",
+    "Survey",
     "calibrate",
     "colours_under",
     "explain",
@@ -20,8 +24,7 @@ __all__ = [
     "fit_spectra",
     "load_model",
     "metamers",
-    "model_name",
-    "on_device",
+    "model_names",
+    "register",
     "spread",
-    "tissue_of",
 ]

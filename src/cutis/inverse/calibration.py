@@ -14,7 +14,6 @@ Conversion and gains are undone on output, so colours come back as they came.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Literal
 
 import numpy as np
@@ -22,7 +21,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from cutis.albedo import albedo_space
 from cutis.albedo.lights import skin_conversion
-from cutis.colour import light_conversion
+from cutis.colour import LightLike, light_conversion
+from cutis.colour.light import light as named_light
 from cutis.errors import CutisError
 from cutis.inverse.fit import fit
 from cutis.kernels.nearest import curve_order
@@ -74,7 +74,7 @@ class Calibration:
         return captured
 
 
-def to_d65(light: str, tissue: Tissue = ALIAGA2022) -> NDArray[np.float64]:
+def to_d65(light: LightLike, tissue: Tissue = ALIAGA2022) -> NDArray[np.float64]:
     """(3, 3) matrix from the RGB of captures under `light` to that under D65, rgb @ C.T.
 
     Of the paper's tissue the conversion that the paper took, of mixes of three bands
@@ -87,7 +87,7 @@ def calibrate(
     rgb: ArrayLike,
     white: White = None,
     exposure: Exposure = None,
-    light: str = "D65",
+    light: LightLike = "D65",
     tissue: Tissue = ALIAGA2022,
 ) -> Calibration:
     """Light and gains for masked texels `rgb` (n, 3) of linear sRGB.
@@ -103,27 +103,27 @@ def calibrate(
     if not np.array_equal(matrix, np.eye(3)):
         conversion = tuple(tuple(float(v) for v in row) for row in matrix)
         rgb = np.asarray(rgb) @ matrix.T
-        light = Path(light).name if Path(light).is_file() else light
+        name = named_light(light).name
     else:
-        light = "D65"
+        name = "D65"
     fixed = np.ones(3)
     if not (white is None or isinstance(white, str)):
         fixed = fixed * _checked(white, 3, "white")
     if not (exposure is None or isinstance(exposure, str)):
         fixed = fixed * _checked([exposure], 1, "exposure")
-    for name, value in (("white", white), ("exposure", exposure)):
+    for which, value in (("white", white), ("exposure", exposure)):
         if isinstance(value, str) and value not in ("none", "auto"):
-            raise CutisError(f"{name} must be none, auto or numbers, not {value!r}")
+            raise CutisError(f"{which} must be none, auto or numbers, not {value!r}")
     if white != "auto" and exposure != "auto":
         red, green, blue = (float(g) for g in fixed)
         origin = "given" if np.any(fixed != 1) else "none"
-        return Calibration((red, green, blue), origin, light, conversion)
+        return Calibration((red, green, blue), origin, name, conversion)
     if white == "auto":
         found = _search(np.asarray(rgb) * fixed, np.eye(3), tissue)
     else:
         found = _search(np.asarray(rgb) * fixed, np.ones((1, 3)), tissue)
     red, green, blue = (float(g) for g in fixed * found)
-    return Calibration((red, green, blue), "auto", light, conversion)
+    return Calibration((red, green, blue), "auto", name, conversion)
 
 
 def _checked(values: Sequence[float], count: int, name: str) -> NDArray[np.float64]:

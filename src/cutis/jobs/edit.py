@@ -1,116 +1,156 @@
-"""One file of maps edited: from maps and capture to the edited albedo, in bands of rows."""
+"""Maps edited: from maps and capture to the edited albedo, in bands of rows."""
 
 import contextlib
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import numpy as np
+
+from cutis.colour import Light, Space
 from cutis.errors import CutisError
-
-if TYPE_CHECKING:
-    from cutis.colour import Space
-    from cutis.jobs.estimate import Progress
-    from cutis.maps import Edit
-
-
-@dataclass(frozen=True)
-class Job:
-    """What to edit, how, and where to."""
-
-    maps: Path
-    output: Path
-    edits: "tuple[Edit, ...]"
-    amount: float = 1.0
-    mask: Path | None = None
-    source: Path | None = None
-    model: str | None = None
-    space: "Space | None" = None
-    save_maps: Path | None = None
-    illuminant: str | None = None
-
-    def tile(self, number: int, tile_of: Callable[[Path, int], Path]) -> "Job":
-        """The same for one tile of a UDIM set."""
-        names = ("maps", "output", "mask", "source", "save_maps")
-        paths = {name: getattr(self, name) for name in names}
-        tiles: dict[str, Any] = {n: p and tile_of(p, number) for n, p in paths.items()}
-        return replace(self, **tiles)
+from cutis.inverse import Model
+from cutis.jobs.files import check_outputs
+from cutis.jobs.job import digest_of
+from cutis.maps import Change, Edit, Header, MapsFile, Step, find_source, maps_writer, open_source
+from cutis.maps.estimating import Progress, nobody
+from cutis.maps.skin_maps import Recolouring
+from cutis.maps.source import source_note
+from cutis.optics import RARE_NAMES
+from cutis.textures import MaskFile, TextureFile, format_of, sweep, texture_writer
+from cutis.textures.udim import TOKEN, tile_of, udim_tiles
 
 
 @dataclass(frozen=True)
 class Edited:
     """What an edit did: its steps, texels clamped in each, texels of the mask, texels changed."""
 
+    output: Path
     edits: tuple[str, ...]
     clamped: tuple[int, ...]
     inside: int
     changed: int
 
 
-def edit_file(job: Job, progress: "Progress") -> Edited:
-    """Writes the edited albedo, and the edited maps where that is asked for."""
-    import numpy as np
+@dataclass(frozen=True)
+class EditJob:
+    """A file of maps, what to do to it, and where the edited albedo goes.
 
-    from cutis.maps import MapsFile, blank, find_source, maps_writer, open_source, source_note
-    from cutis.optics import RARE_NAMES
-    from cutis.textures import MaskFile, texture_writer
+    `edits` are applied in order, `amount` (0–1) of them, inside the painted `mask`. `source` is the
+    capture where it is not where the maps say; `model` another model than that of the maps.
+    `light` shows the face under another light. `space` is that of the output, None for the
+    capture's. `save_maps` also writes the edited maps. Of a UDIM set, all names hold <UDIM>.
+    """
 
-    with contextlib.ExitStack() as stack:
-        maps = stack.enter_context(MapsFile(job.maps))
-        model = maps.model if job.model is None else job.model
-        path = find_source(maps.provenance, job.maps, job.source)
-        for written in (job.output, job.save_maps):
-            if written is not None and same_file(written, path):
-                raise CutisError(f"{written} is the capture itself; give another name")
-        for other in (job.maps, job.save_maps):
-            if other is not None and same_file(job.output, other):
-                raise CutisError(f"{job.output} is a file of maps; give another name")
-        texture = stack.enter_context(open_source(maps.provenance, path))
-        shape, total = maps.shape, maps.shape[0] * maps.shape[1]
-        if texture.shape != shape:
-            raise CutisError(f"{path}: the texture is {texture.shape}, the maps are {shape}")
-        mask = None if job.mask is None else stack.enter_context(MaskFile(job.mask, shape))
-        # the header of edited maps says how many texels were clamped, so they come in a second pass
-        inside, changed, marked, clamped = 0, 0, False, None
-        writer = stack.enter_context(texture_writer(job.output, texture, job.space))
+    maps: Path
+    output: Path = field(metadata={"result": False})
+    edits: tuple[Edit, ...] = ()
+    amount: float = 1.0
+    mask: Path | None = None
+    source: Path | None = None
+    light: Light | None = None
+    model: Model | None = None
+    space: Space | None = None
+    save_maps: Path | None = field(default=None, metadata={"result": False})
+
+    def __post_init__(self) -> None:
+        format_of(self.output)  # fails now rather than after the work
+        Step(self.edits, self.amount)
+        if TOKEN in self.maps.name:
+            for path in (self.output, self.save_maps, self.source):
+                if path is not None and TOKEN not in path.name:
+                    raise CutisError(f"{path}: of a UDIM set, name it with {TOKEN} too")
+
+    def digest(self) -> str:
+        """SHA-256 of all that the result depends on."""
+        return digest_of(self)
+
+    def tiles(self) -> "tuple[EditJob, ...]":
+        """A job for each tile of a UDIM set; itself otherwise."""
+        if TOKEN not in self.maps.name:
+            return (self,)
+        names = ("maps", "output", "mask", "source", "save_maps")
+        paths: dict[str, Any] = {name: getattr(self, name) for name in names}
+        tiles: list[EditJob] = []
+        for number in udim_tiles(self.maps):
+            named: dict[str, Any] = {n: p and tile_of(p, number) for n, p in paths.items()}
+            tiles.append(replace(self, **named))
+        return tuple(tiles)
+
+    def run(self, progress: Progress = nobody) -> list[Edited]:
+        """Writes the edited albedo of every tile, and the edited maps where that is asked for."""
+        from cutis.jobs.job import part
+
+        jobs = self.tiles()
+        return [job._run(part(progress, number, len(jobs))) for number, job in enumerate(jobs)]
+
+    def _run(self, progress: Progress) -> Edited:
+        with contextlib.ExitStack() as stack:
+            maps = stack.enter_context(MapsFile(self.maps))
+            path = find_source(maps.provenance, self.maps, self.source)
+            inputs = {"the file of maps": self.maps, "the capture": path, "the mask": self.mask}
+            check_outputs([self.output, self.save_maps], inputs)
+            for output in (self.output, self.save_maps):
+                if output is not None:
+                    sweep(output.parent)
+            texture = stack.enter_context(open_source(maps.provenance, path))
+            if texture.shape != maps.shape:
+                raise CutisError(f"{path}: the texture is {texture.shape}, the maps {maps.shape}")
+            mask = None
+            if self.mask is not None:
+                mask = stack.enter_context(MaskFile(self.mask, maps.shape))
+            changes = (Step(self.edits, self.amount, mask),)
+            model = self.model or maps.made_by.load()
+            done = self._albedo(stack, maps, texture, changes, mask, model, progress)
+            if self.save_maps is not None:
+                self._maps(stack, maps, texture, changes, done, model, progress)
+        return done
+
+    def _albedo(
+        self, stack: contextlib.ExitStack, maps: MapsFile, texture: TextureFile,
+        changes: tuple[Change, ...], mask: MaskFile | None, model: Model, progress: Progress,
+    ) -> Edited:  # fmt: skip
+        look = Recolouring(model, maps.header.calibration, self.light)
+        writer = stack.enter_context(texture_writer(self.output, texture, self.space))
+        height, width = maps.shape
+        inside, changed, marked = 0, 0, False
+        clamped: Any = 0
         for rows in texture.bands():
-            skin = replace(maps.rows(rows, trust=False), model=model)
-            where = None if mask is None else mask.rows(rows)
-            edited = skin.apply(job.edits, where, amount=job.amount)
+            skin = maps.edited(rows, changes, trust=False)
             part = texture.rows(rows)
-            result = edited.retouch(part, job.illuminant)
+            which, colours = look(skin, part.linear())
+            result = part.with_linear(colours, which)
             writer.write(result)
             inside += int(np.count_nonzero(skin.mask))
-            marked = marked or where is None or bool((where > MaskFile.BLACK).any())
+            if mask is not None and not marked:
+                marked = bool((mask.rows(rows) > MaskFile.BLACK).any())
             changed += int(np.count_nonzero((result.pixels != part.pixels).any(axis=-1)))
-            counts = np.array(edited.clamped, dtype=np.int64)
-            clamped = counts if clamped is None else clamped + counts
-            progress(min(rows.stop, shape[0]) * shape[1], total, "editing")
+            clamped = clamped + np.array(skin.clamped, dtype=np.int64)
+            progress(min(rows.stop, height) * width, height * width, "editing")
         if not inside:
             raise maps.no_mask()
-        if not marked and mask is not None:
+        if mask is not None and not marked:
             raise mask.empty()
-        assert clamped is not None
-        told = tuple(int(count) for count in clamped[len(maps.edits) :])
-        names = edited.edits
-        if job.save_maps is not None:
-            touched = {edit.parameter for edit in job.edits} | set(maps.changed)
-            rare = [name for name in RARE_NAMES if name in touched | set(maps.rare)]
-            like = blank(maps.calibration, model, source_note(texture), maps.sigmas, maps.confident)
-            like = replace(like, edits=names, clamped=(*maps.clamped, *told))
-            put = stack.enter_context(
-                maps_writer(job.save_maps, like, shape, "float", sorted(touched), rare)
-            )
-            for rows in maps.bands():
-                where = None if mask is None else mask.rows(rows)
-                skin = replace(maps.rows(rows), model=model)
-                put(skin.apply(job.edits, where, amount=job.amount))
-                progress(min(rows.stop, shape[0]) * shape[1], total, "writing maps")
-    return Edited(names[len(maps.edits) :], told, inside, changed)
+        told = tuple(int(count) for count in clamped[len(maps.header.edits) :])
+        lines = tuple(line for change in changes for line in change.told)
+        return Edited(self.output, lines, told, inside, changed)
 
-
-def same_file(one: Path, other: Path) -> bool:
-    """Whether two names are of one file, also through links."""
-    return one.resolve() == other.resolve() or (
-        one.exists() and other.exists() and one.samefile(other)
-    )
+    def _maps(
+        self, stack: contextlib.ExitStack, maps: MapsFile, texture: TextureFile,
+        changes: tuple[Change, ...], done: Edited, model: Model, progress: Progress,
+    ) -> None:  # fmt: skip
+        """In a second pass: the header says how many texels were clamped."""
+        assert self.save_maps is not None
+        before = maps.header
+        touched = {edit.parameter for edit in self.edits} | set(before.changed)
+        header = Header(
+            model.name, model.digest, before.calibration, source_note(texture), before.state,
+            (*before.edits, *done.edits), (*before.clamped, *done.clamped), before.sigmas,
+            before.confident, tuple(sorted(touched)),
+            tuple(name for name in RARE_NAMES if name in touched | set(before.rare)),
+        )  # fmt: skip
+        height, width = maps.shape
+        put = stack.enter_context(maps_writer(self.save_maps, header, maps.shape))
+        for rows in maps.bands():
+            put(maps.edited(rows, changes))
+            progress(min(rows.stop, height) * width, height * width, "writing maps")

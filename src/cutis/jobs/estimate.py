@@ -1,198 +1,296 @@
-"""One capture from file to files: what `cutis estimate` does to each of its inputs.
+"""Captures from files to files: maps, model albedo, previews and report of each.
 
-Everything goes through in bands of rows, so that memory does not grow with the image.
+The captures of a job are one set: they share what a survey of all of them finds, light and gains
+first. Each goes through in bands of rows, so that memory does not grow with the image.
 """
 
 import contextlib
 import json
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
-from cutis.apps import options
+from cutis.colour import LINEAR, Light, Space, light
+from cutis.errors import CutisError
+from cutis.inverse import Model
+from cutis.inverse.calibration import Exposure, White
+from cutis.inverse.model import content_digest
+from cutis.jobs.files import check_outputs, made_folder
+from cutis.jobs.job import Told, digest_of, tell, told
+from cutis.jobs.results import FILES, MADE_FROM, Found, alone, look, made_from
+from cutis.maps import FileCapture, Header, Surveyed, estimate_bands, load_model, survey
+from cutis.maps.estimating import Progress, nobody
+from cutis.maps.skin_maps import Estimate
+from cutis.maps.source import source_note
+from cutis.maps.writing import maps_writer
+from cutis.optics import NAMES
+from cutis.report import Regions, Report, RunningReport
+from cutis.report.page import write_report
+from cutis.report.previews import Previews
+from cutis.textures import MaskFile, TextureFile, channel_writer, replacing, sweep
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from cutis.inverse import Calibration
-    from cutis.textures import MaskFile, TextureFile
-
-Progress = Callable[[int, int, str], None]
-"""Takes texels done, texels in all, and what is being done."""
-
-
-@dataclass(frozen=True)
-class Settings:
-    """What the results depend on, besides the files themselves; as the flags give it."""
-
-    white: str = "none"
-    exposure: str = "none"
-    illuminant: str = "D65"
-    model: str = "default"
-    colorspace: str = "auto"
-    ocio: str | None = None
-    """A configuration; "" for none, None for $OCIO."""
-    output_colorspace: str | None = None
-    half: bool = False
-    page: bool = False
-    device: str = "cpu"
-    sigma: bool = True
+Asked = dict[str, Told]
 
 
 @dataclass(frozen=True)
-class Task:
-    """A capture, the mask and the regions that belong to it, and where results go."""
+class CaptureFiles:
+    """A capture with the mask and the picture of regions that belong to it."""
 
     face: Path
-    mask: Path | None
-    output: Path
-    settings: Settings
+    mask: Path | None = None
     regions: Path | None = None
 
-    @property
-    def stem(self) -> Path:
+
+@dataclass(frozen=True)
+class Estimated:
+    """What came of a capture: its report, or in one line why there is none.
+
+    `there` says that the result was there already, made of the same in the same way; `changed`
+    names the contents for whose sake it was made again.
+    """
+
+    face: Path
+    report: Report | None = None
+    failure: str | None = None
+    there: bool = False
+    changed: tuple[str, ...] = ()
+    pictures: dict[str, Any] = field(default_factory=dict, compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class EstimateJob:
+    """Captures of one set, how to estimate them, and the folder where results go.
+
+    `captures` share light and gains: the tiles of a UDIM texture, frames of one person, or one
+    capture. `white` and `exposure` are "none", "auto" or gains (`inverse.calibrate`), `light` is
+    that of the capture, `colorspace` that of its texels, None for what the file says;
+    `output_colorspace` is that of NAME.model.exr, None for linear sRGB. `half` stores maps in half
+    the size, `sigma` adds standard deviations and confidence where the model knows them, `page`
+    adds NAME.report.html. `again` makes anew what is there, also what was made otherwise.
+    """
+
+    captures: tuple[CaptureFiles, ...]
+    output: Path = field(default=Path(), metadata={"result": False})
+    white: White = "none"
+    exposure: Exposure = "none"
+    light: Light = field(default_factory=lambda: light("D65"))
+    model: Model = field(default_factory=load_model)
+    colorspace: Space | None = None
+    output_colorspace: Space | None = None
+    half: bool = False
+    sigma: bool = True
+    page: bool = False
+    again: bool = field(default=False, metadata={"result": False})
+
+    def __post_init__(self) -> None:
+        if not self.captures:
+            raise CutisError("there is no capture to estimate")
+
+    def digest(self) -> str:
+        """SHA-256 of all that the results depend on."""
+        return digest_of(self)
+
+    def run(self, progress: Progress = nobody) -> list[Estimated]:
+        """Estimates what is not there yet; a capture that fails leaves the others alone."""
+        from cutis.jobs.runners import here
+        from cutis.jobs.sets import estimate_sets
+
+        return list(estimate_sets([self], here, progress))
+
+    def absolute(self) -> "EstimateJob":
+        """The same under whole names, for work in other processes."""
+        files = tuple(
+            CaptureFiles(*(None if path is None else Path(os.path.abspath(path)) for path in paths))  # type: ignore[arg-type]
+            for paths in ((one.face, one.mask, one.regions) for one in self.captures)
+        )
+        return replace(self, captures=files, output=Path(os.path.abspath(self.output)))
+
+    # the steps, which runners put together ----------------------------------------------------
+
+    def stem(self, capture: CaptureFiles) -> Path:
         """Results are called this and what they are: STEM.skin.exr."""
-        return self.output / self.face.stem
+        return self.output / capture.face.stem
+
+    def report_file(self, capture: CaptureFiles) -> Path:
+        """The report of a capture."""
+        return Path(f"{self.stem(capture)}.report.json")
+
+    def shared(self) -> Asked:
+        """What the results of all captures depend on; files that are not there count as empty."""
+        shared = {name: one for name, one in told(self).items() if name != "captures"}
+        if "auto" in (self.white, self.exposure) or self.model.survey is not None:
+            files = [path for one in self.captures for path in (one.face, one.mask) if path]
+            whole = sorted(tell(path).content for path in files)
+            shared["set"] = Told("", content_digest(whole))
+        return shared
+
+    def own(self, capture: CaptureFiles) -> Asked:
+        """What the result of one capture depends on beside; CutisError where a file is missing."""
+        return {
+            "capture": _file(capture.face),
+            "mask": _file(capture.mask),
+            "regions": _file(capture.regions),
+        }
+
+    def found(self, capture: CaptureFiles, asked: Asked) -> Found:
+        """What is there of a capture's result."""
+        return look(self.report_file(capture), asked)
+
+    def survey(self, progress: Progress = nobody) -> Surveyed:
+        """What the captures share; those that cannot be read have no part in it."""
+        captures = self.captures
+        try:
+            return self._surveyed(captures, progress)
+        except (CutisError, OSError):
+            good = tuple(one for one in captures if self._readable(one))
+            if not good or good == captures:
+                raise
+            return self._surveyed(good, progress)
+
+    def _surveyed(self, captures: tuple[CaptureFiles, ...], progress: Progress) -> Surveyed:
+        opened = [lambda one=one: self._opened(one) for one in captures]
+        return survey(opened, self.model, self.white, self.exposure, self.light, progress)
+
+    def _readable(self, capture: CaptureFiles) -> bool:
+        try:
+            with self._opened(capture) as opened:
+                for rows in opened.bands():
+                    opened.rows(rows)
+        except (CutisError, OSError):
+            return False
+        return True
+
+    def estimate(
+        self, capture: CaptureFiles, known: Surveyed, asked: Asked, progress: Progress = nobody
+    ) -> Estimated:
+        """Writes the results of one capture: STEM.skin.exr, STEM.model.exr, previews, report."""
+        with made_folder(self.output), alone(self.stem(capture)):
+            self.report_file(capture).unlink(missing_ok=True)
+            sweep(self.output)
+            return self._write(capture, known, asked, progress)
 
     @contextlib.contextmanager
-    def opened(self) -> Iterator[tuple["TextureFile", "MaskFile | None"]]:
-        """The capture and its mask, open."""
-        from cutis.textures import MaskFile, TextureFile
-
+    def _opened(self, capture: CaptureFiles) -> Iterator[FileCapture]:
+        """A capture and its mask, open."""
         with contextlib.ExitStack() as stack:
-            how = self.settings
-            texture = stack.enter_context(TextureFile(self.face, how.colorspace, how.ocio))
-            mask = None if self.mask is None else MaskFile(self.mask, texture.shape)
-            yield texture, mask if mask is None else stack.enter_context(mask)
+            texture = stack.enter_context(TextureFile(capture.face, self.colorspace or "auto"))
+            mask = None if capture.mask is None else MaskFile(capture.mask, texture.shape)
+            yield FileCapture(texture, None if mask is None else stack.enter_context(mask))
 
+    def check_names(self, capture: CaptureFiles) -> None:
+        """CutisError where a result of a capture would overwrite what is read."""
+        stem = self.stem(capture)
+        inputs: dict[str, Path | None] = {}
+        for one in self.captures:
+            inputs[f"the capture {one.face.name}"] = one.face
+            inputs |= {"the mask": one.mask, "the picture of regions": one.regions}
+        check_outputs([Path(f"{stem}{end}") for end in ENDS], inputs)
 
-def cover_of(part: Any, mask: "MaskFile | None", rows: slice) -> "NDArray[np.float32]":
-    """Where skin is in some rows of a texture, (h, W) in [0, 1]: the mask, else alpha."""
-    import numpy as np
-
-    if mask is not None:
-        return mask.rows(rows)
-    alpha = part.alpha()
-    return np.ones(part.shape, np.float32) if alpha is None else (alpha > 0).astype(np.float32)
-
-
-def calibrated(tasks: Sequence[Task], progress: Progress) -> "Calibration":
-    """The calibration that captures of one set share."""
-    from cutis.inverse import calibrate, tissue_of
-    from cutis.maps import Sampler
-
-    how = tasks[0].settings
-    white, exposure = options.white_gains(how.white), options.exposure_gain(how.exposure)
-    if "auto" not in (white, exposure):
-        return calibrate(_no_colours(), white, exposure, how.illuminant)
-    with contextlib.ExitStack() as stack:
-        opened = [stack.enter_context(task.opened()) for task in tasks]
-        total = sum(texture.shape[0] * texture.shape[1] for texture, _ in opened)
-    sampler = Sampler(total)
-    while not sampler.enough():
-        done = 0
-        for task in tasks:
-            with task.opened() as (texture, mask):
-                for rows in texture.bands():
-                    part = texture.rows(rows)
-                    sampler.add(rows.start, part.linear(), cover_of(part, mask, rows))
-                    done += part.shape[0] * part.shape[1]
-                    progress(done, total, "looking for gains")
-    progress(total, total, "calibrating")
-    return calibrate(sampler.colours(), white, exposure, how.illuminant, tissue_of(how.model))
-
-
-def _no_colours() -> "NDArray[np.float32]":
-    import numpy as np
-
-    return np.zeros((0, 3), np.float32)
-
-
-def estimate_file(
-    task: Task, calibration: "Calibration", progress: Progress, made_from: str | None = None
-) -> dict[str, Any]:
-    """Writes STEM.skin.exr, STEM.model.exr, previews, STEM.report.json; returns the report.
-
-    `made_from` goes into the report, which is written last: it says that all the rest is there.
-    """
-    return estimate_and_show(task, calibration, progress, made_from)[0]
-
-
-def estimate_and_show(
-    task: Task, calibration: "Calibration", progress: Progress, made_from: str | None = None
-) -> "tuple[dict[str, Any], dict[str, NDArray[np.float32]]]":
-    """The same; returns the report and the reduced pictures of the previews."""
-    import cutis.maps as maps
-    from cutis.colour import LINEAR
-    from cutis.inverse import load_model, on_device
-    from cutis.optics import NAMES
-    from cutis.report import Regions, Report
-    from cutis.report.previews import Previews
-    from cutis.textures import channel_writer, colour_space, replacing, sweep
-
-    how, stem = task.settings, task.stem
-    kind: Literal["half", "float"] = "half" if how.half else "float"
-    name = how.output_colorspace
-    space = LINEAR if name is None else colour_space(name, how.ocio)
-    seen = False
-    with contextlib.ExitStack() as stack:
-        stack.enter_context(on_device(how.device))
-        texture, mask = stack.enter_context(task.opened())
-        stack.enter_context(options.made_folder(task.output))
-        sweep(task.output)
-        shape, total = texture.shape, texture.shape[0] * texture.shape[1]
-        trusted = how.sigma and load_model(how.model).to_trust is not None
-        like = maps.blank(
-            calibration, how.model, maps.source_note(texture), NAMES if trusted else (), trusted
+    def _write(
+        self, capture: CaptureFiles, known: Surveyed, asked: Asked, progress: Progress
+    ) -> Estimated:
+        stem = self.stem(capture)
+        with contextlib.ExitStack() as stack:
+            opened = stack.enter_context(self._opened(capture))
+            run = _Run(self, known, opened, stem, stack)
+            regions = None
+            if capture.regions is not None:
+                regions = Regions(capture.regions, opened.shape)
+            run.through(regions, progress)
+            if not opened.seen:
+                raise opened.empty()
+        texture = opened.texture
+        report = replace(
+            run.report.finish(),
+            colorspace=f"{texture.space.name} ({texture.origin})",
+            regions=() if regions is None else regions.finish(),
         )
-        running, previews = Report(like, shape), Previews(calibration, shape)
-        regions = None if task.regions is None else Regions(task.regions, shape)
+        total = opened.shape[0] * opened.shape[1]
+        progress(total, total, "drawing previews")
+        files = [f"{stem.name}.skin.exr", f"{stem.name}.model.exr"]
+        files += [path.name for path in run.previews.write(stem)]
+        pictures = run.previews.pictures()
+        if self.page:
+            write_report(Path(f"{stem}.report.html"), report, pictures, capture.face.name)
+            files.append(f"{stem.name}.report.html")
+        results = {**report.as_dict(), FILES: files, MADE_FROM: made_from(asked)}
+        with replacing(self.report_file(capture)) as path:
+            path.write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
+        return Estimated(capture.face, report, pictures=pictures)
+
+
+ENDS = (
+    ".skin.exr", ".model.exr", ".report.json", ".report.html",
+    *(f".{name}.png" for name in (*NAMES, "error", "sigma", "confidence")),
+)  # fmt: skip
+"""How names of results may end."""
+
+
+class _Run:
+    """One capture on its way through, with all that is made of it."""
+
+    def __init__(
+        self, job: EstimateJob, known: Surveyed, opened: FileCapture, stem: Path,
+        stack: contextlib.ExitStack,
+    ) -> None:  # fmt: skip
+        self._job, self._known, self._opened = job, known, opened
+        self._sigma = job.sigma and (
+            job.model.to_trust is not None or job.model.of_tile is not None
+        )
+        kind: Literal["half", "float"] = "half" if job.half else "float"
+        space = self._space = job.output_colorspace or LINEAR
         header: dict[str, Any] = {"colorspace": "lin_rec709" if space == LINEAR else space.name}
         if space.chromaticities is not None and not space.encoded:
             header["chromaticities"] = space.chromaticities
-        put_maps = stack.enter_context(maps.maps_writer(f"{stem}.skin.exr", like, shape, kind))
-        put_model = stack.enter_context(
-            channel_writer(f"{stem}.model.exr", "RGB", shape, kind, header)
+        self.report = RunningReport(job.model, known.calibration, opened.shape)
+        self.previews = Previews(known.calibration, opened.shape)
+        self._notes = source_note(opened.texture)
+        self._put_maps: Any = None
+        self._put_model = stack.enter_context(
+            channel_writer(f"{stem}.model.exr", "RGB", opened.shape, kind, header)
         )
-        for rows in texture.bands():
-            part = texture.rows(rows)
-            cover, source = cover_of(part, mask, rows), part.linear()
-            seen = seen or bool((cover > (0 if mask is None else mask.BLACK)).any())
-            found: dict[str, Any] = maps.estimate_rows(
-                source, cover, calibration, how.model, trusted
-            )
-            skin = replace(
-                like, **found, mask=cover, source=source, first_row=rows.start, whole=shape
-            )
-            put_maps(skin)
-            albedo = space.from_linear_srgb(skin.model_albedo)
-            put_model({name: albedo[..., i] for i, name in enumerate("RGB")})
-            running.add(skin)
-            previews.add(skin)
+        self._open_maps = lambda first: stack.enter_context(
+            maps_writer(f"{stem}.skin.exr", self._header(first), opened.shape, kind)
+        )
+
+    def _header(self, first: Estimate) -> Header:
+        model, known = self._job.model, self._known
+        return Header(
+            model.name, model.digest, known.calibration, self._notes, known.state,
+            sigmas=tuple(first.sigmas), confident=first.confidence is not None,
+        )  # fmt: skip
+
+    def through(self, regions: Regions | None, progress: Progress) -> None:
+        """Estimates all rows."""
+        height, width = self._opened.shape
+        bands = estimate_bands(self._opened, self._job.model, self._known, sigma=self._sigma)
+        for rows, skin in bands:
+            if self._put_maps is None:
+                self._put_maps = self._open_maps(skin)
+            self._put_maps(skin)
+            albedo = self._space.from_linear_srgb(skin.model_albedo)
+            self._put_model({name: albedo[..., i] for i, name in enumerate("RGB")})
+            self.report.add(skin)
+            self.previews.add(skin)
             if regions is not None:
                 regions.add(skin, rows)
-            progress(min(rows.stop, shape[0]) * shape[1], total, "estimating")
-        if not seen:
-            raise _empty(task) if mask is None else mask.empty()
-    results = {**running.finish(), "colorspace": f"{texture.space.name} ({texture.origin})"}
-    if regions is not None:
-        results["regions"] = regions.finish()
-    progress(total, total, "drawing previews")
-    previews.write(stem)
-    if how.page:
-        from cutis.report.page import write_report
-
-        write_report(Path(f"{stem}.report.html"), results, previews.pictures(), task.face.name)
-    if made_from is not None:
-        results["made_from"] = made_from
-    with replacing(Path(f"{stem}.report.json")) as path:
-        path.write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
-    return results, previews.pictures()
+            progress(min(rows.stop, height) * width, height * width, "estimating")
 
 
-def _empty(task: Task) -> Exception:
-    from cutis.errors import CutisError
+def _file(path: Path | None) -> Told:
+    """A file by name and content; CutisError where it is not there."""
+    if path is None:
+        return Told("none")
+    try:
+        return tell(_present(path))
+    except OSError as error:
+        raise CutisError(f"{path}: {error.strerror or error}; check the name") from error
 
-    return CutisError(f"{task.face}: all of it is transparent, so that nothing is skin")
+
+def _present(path: Path) -> Path:
+    if not path.is_file():
+        what = "is a folder" if path.is_dir() else "no such file"
+        raise CutisError(f"{path}: {what}; check the name")
+    return path

@@ -1,15 +1,24 @@
 """What `cutis estimate` is given: files, folders, patterns and UDIM sets."""
 
 import contextlib
+import glob
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from cutis.colour import Space
 from cutis.errors import CutisError
 from cutis.optics import NAMES
 from cutis.textures import TextureFile
 from cutis.textures.headers import EXTENSIONS
-from cutis.textures.udim import TOKEN, missing_tiles, tile_of, udim_pattern, udim_tiles
+from cutis.textures.udim import (
+    TOKEN,
+    missing_tiles,
+    tile_of,
+    tile_sets,
+    udim_pattern,
+    udim_tiles,
+)
 
 Set = tuple[Path, ...]
 """Captures that share one calibration."""
@@ -18,27 +27,38 @@ RESULTS = (".skin.exr", ".model.exr", *(f".{name}.png" for name in PICTURES))
 """Ends of names that are results, not captures, where NAME.report.json lies beside."""
 
 
-def capture_sets(words: Sequence[str], udim: bool, sequence: bool) -> list[Set]:
+def capture_sets(
+    words: Sequence[str],
+    udim: bool,
+    sequence: bool,
+    say: Callable[[str], None] = lambda _: None,
+) -> list[Set]:
     """The captures that the words on the command line mean, in sets.
 
-    A word is a file, NAME.<UDIM>.EXT, a folder, or, after a folder, a pattern such as '*.exr'.
-    Tiles of a UDIM texture make one set: those of NAME.<UDIM>.EXT, of NAME.1001.EXT with `udim`,
-    and those found side by side in a folder. With `sequence` all captures are one set. Raises
-    CutisError where nothing is found.
+    A word is a file, NAME.<UDIM>.EXT, a folder, a pattern such as 'show/*.exr', or, after a folder,
+    a pattern inside it. What is there under its name is no pattern. Tiles of a UDIM texture make
+    one set: those of NAME.<UDIM>.EXT, of NAME.1001.EXT with `udim`, and those found side by side
+    that are sure to be tiles (`textures.udim.tile_sets`); `say` is told of the others. With
+    `sequence` all captures are one set. Raises CutisError where nothing is found.
     """
     sets: list[Set] = []
     words = list(words)
     while words:
-        path = Path(words.pop(0))
-        if path.is_dir():
-            pattern = words.pop(0) if words and any(c in words[0] for c in "*?[") else None
-            sets += _in_folder(path, pattern)
+        word = words.pop(0)
+        path = Path(word)
+        if _is_there(path, Path.is_dir):
+            inside = None
+            if words and _is_pattern(words[0]) and not Path(words[0]).is_absolute():
+                inside = words.pop(0)
+            sets += _found(path, inside, say)
+        elif _is_there(path, Path.exists):
+            sets.append(_whole_set(path) if udim else (path,))
         elif TOKEN in path.name:
             sets.append(tuple(udim_tiles(path).values()))
-        elif udim:
-            sets.append(_whole_set(path))
+        elif _is_pattern(word):
+            sets += _found(None, word, say)
         else:
-            sets.append((path,))
+            sets.append(_whole_set(path) if udim else (path,))
     if sequence:
         sets = [tuple(path for one in sets for path in one)]
     seen: set[str] = set()
@@ -60,22 +80,41 @@ def _whole_set(path: Path) -> Set:
     return tuple(udim_tiles(pattern).values())
 
 
-def _in_folder(folder: Path, pattern: str | None) -> list[Set]:
+def _is_there(path: Path, how: Callable[[Path], bool]) -> bool:
+    try:
+        return how(path)
+    except (OSError, ValueError):  # a name longer than names may be, or with a NUL
+        return False
+
+
+def _is_pattern(word: str) -> bool:
+    """Whether a word that is no file's name stands for some."""
+    return any(c in word for c in "*?[") and not _is_there(Path(word), Path.exists)
+
+
+def _found(folder: Path | None, pattern: str | None, say: Callable[[str], None]) -> list[Set]:
+    """Captures in a folder, those that match a pattern inside it, or those of a pattern alone."""
+    names = glob.glob(pattern or "*", root_dir=folder, recursive=True)
+    paths = [Path(name) if folder is None else folder / name for name in names]
     found = [
         path
-        for path in sorted(folder.glob(pattern or "*"))
-        if path.is_file()
+        for path in sorted(paths)
+        if _is_there(path, Path.is_file)
         and not path.name.startswith(".")
         and not _is_result(path)
         and (pattern is not None or path.suffix.lower() in EXTENSIONS)
     ]
     if not found:
-        what = f"no file matches {pattern}" if pattern else "there is no image"
-        raise CutisError(f"{folder}: {what} in this folder; check the name")
-    groups: dict[Path, list[Path]] = {}
-    for path in found:
-        groups.setdefault(udim_pattern(path) or path, []).append(path)
-    return [tuple(group) for group in groups.values()]
+        where = "" if folder is None else f"{folder}: "
+        what = f"no file matches {pattern}" if pattern else "there is no image in this folder"
+        inside = " in this folder" if pattern and folder is not None else ""
+        raise CutisError(f"{where}{what}{inside}; check the name")
+    sets = []
+    for one, note in tile_sets(found):
+        sets.append(one)
+        if note:
+            say(note)
+    return sets
 
 
 def _is_result(path: Path) -> bool:
@@ -94,14 +133,14 @@ def gaps(captures: Set) -> list[str]:
     return [tile_of(pattern, number).name for number in missing_tiles(numbers)]
 
 
-def odd_ones(captures: Set, colorspace: str = "auto", ocio: str | None = None) -> list[str]:
+def odd_ones(captures: Set, colorspace: Space | None = None) -> list[str]:
     """What to say of captures of a set that are stored unlike most of it: depth, channels, space.
 
     Sizes may differ, as tiles' do. Captures that cannot be read are left to what reads them.
     """
     kinds: dict[Path, str] = {}
     for path in captures if len(captures) > 2 else ():
-        with contextlib.suppress(CutisError), TextureFile(path, colorspace, ocio) as file:
+        with contextlib.suppress(CutisError), TextureFile(path, colorspace or "auto") as file:
             pixels = file.rows(slice(0, 0)).pixels
             kinds[path] = f"{pixels.dtype} {','.join(file.channels)} in {file.space.name}"
     counts = Counter(kinds.values()).most_common()

@@ -5,9 +5,10 @@ Beside the result NAME lies NAME.parts with `run.json`, all that the result depe
 with the batches that are missing; a run with other settings is refused.
 """
 
+import contextlib
 import hashlib
 import json
-import shutil
+import re
 from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
@@ -18,9 +19,10 @@ from numpy.typing import NDArray
 
 from cutis.albedo import SkinSimulation, TensorSimulation
 from cutis.errors import CutisError
-from cutis.textures import replacing
+from cutis.textures import replacing, sweep
 
 Simulation = SkinSimulation | TensorSimulation
+_BATCH = re.compile(r"^\d{6,}\.npy$")
 
 
 def settings(simulation: Simulation) -> dict[str, Any]:
@@ -50,11 +52,19 @@ class Journal:
             raise CutisError(
                 f"{self.folder}: cannot make this folder ({(error.strerror or '').lower()})"
             ) from error
+        foreign = [path.name for path in self.folder.iterdir() if not _is_ours(path)]
+        if foreign:
+            raise CutisError(
+                f"{self.folder} holds {foreign[0]}, which is not of a simulation; move it away, or "
+                "give another name with -o"
+            )
         if note.is_file():
             try:
                 stored = json.loads(note.read_text("utf-8"))
-            except ValueError:
-                stored = {}
+            except (ValueError, RecursionError, OSError):
+                stored = None
+            if not isinstance(stored, dict):
+                raise CutisError(f"{note} is damaged; remove the folder {self.folder.name}")
             changed = [key for key in wanted if stored.get(key) != wanted[key]]
             if changed:
                 raise CutisError(
@@ -64,8 +74,7 @@ class Journal:
         else:
             with replacing(note) as partial:
                 partial.write_text(json.dumps(wanted, indent=2) + "\n", encoding="utf-8")
-        for left in self.folder.glob(".*"):  # of a process that was killed while it wrote
-            left.unlink(missing_ok=True)
+        sweep(self.folder)  # of a process that was killed while it wrote
 
     def missing(self) -> list[int]:
         """Numbers of the batches that are not there yet."""
@@ -92,8 +101,19 @@ class Journal:
             self.remove()
 
     def remove(self) -> None:
-        """Removes the folder, once its result is written."""
-        shutil.rmtree(self.folder, ignore_errors=True)
+        """Removes what is ours, and the folder if nothing else is in it."""
+        with contextlib.suppress(OSError):
+            for path in self.folder.iterdir():
+                if _is_ours(path):
+                    path.unlink(missing_ok=True)
+            self.folder.rmdir()
 
     def _file(self, number: int) -> Path:
         return self.folder / f"{number:06d}.npy"
+
+
+def _is_ours(path: Path) -> bool:
+    """Whether a file has a name of the journal, or is one in the making."""
+    return path.is_file() and (
+        path.name == "run.json" or bool(_BATCH.match(path.name)) or path.name.startswith(".")
+    )

@@ -1,234 +1,307 @@
-"""Pictures of one skin: its textures written for Cycles, rendered, and put under their names."""
+"""Pictures and materials of one skin: textures for Cycles, rendered, and put under their names."""
 
+import contextlib
 import hashlib
 import os
 import tempfile
-from collections.abc import Callable
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from importlib import resources
+from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from cutis.colour import Space
 from cutis.errors import CutisError
+from cutis.jobs.files import check_outputs, made_folder
+from cutis.jobs.job import digest_of, told
+from cutis.maps import Change, Edit, Step
+from cutis.maps.estimating import Progress, nobody
+from cutis.maps.source import digest
+from cutis.render.blender import Blender, find_blender
+from cutis.render.cycles import INDEX, METHOD, base_colour, facing
+from cutis.render.cycles import radius as cycles_radius
+from cutis.render.cycles_process import render
+from cutis.render.display import write_animation, write_picture
+from cutis.render.feed import write_feed
+from cutis.render.finished import Finished
+from cutis.render.finished import digest as recipe_digest
+from cutis.render.frames import Frame, file_names
+from cutis.render.heads import Head, credits_of
+from cutis.render.material_export import export_material
+from cutis.render.medium import mean_free_path, of_maps
+from cutis.render.scene import Scene
+from cutis.render.skin import MAPS, Rows, Skin
+from cutis.textures import MaskFile, TextureFile, format_of, read_texture, sweep
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from cutis.maps import Edit
-    from cutis.render.blender import Blender
-    from cutis.render.frames import Frame
-    from cutis.render.scene import Scene
-    from cutis.render.skin import Rows, Skin
-
-Progress = Callable[[int, int, str], None]
-"""Takes what is done, all, and what is being done."""
 METRE = 1000.0
-"""Millimetres per scene unit of an exported material, unless --unit says otherwise."""
+"""Millimetres per scene unit of an exported material, unless the scene says otherwise."""
 RADII = ("tissue", "maps")
 """Where mean free paths come from."""
 
 
 @dataclass(frozen=True)
-class Order:
-    """What to render: a skin with edits, `scene` with all that is not skin, frames of a sequence.
+class Subject:
+    """What is rendered: a skin with edits, and `scene` with all that is not skin.
 
-    Without `frames` it is one picture, `output`; else `output` names them all.
+    `skin` is a file of maps or an albedo texture. `edits` apply in order, `amount` (0–1) of them,
+    inside the painted `mask`. `source` is the capture of maps where it is not where they say,
+    `model_only` leaves it out. `colorspace` is that of a texture, None for what it says. `radius`
+    is one of `RADII`. `head` is the bundled head that the scene shows, if it is one.
     """
 
     skin: Path
-    output: Path
-    scene: "Scene"
-    edits: "tuple[Edit, ...]" = ()
+    scene: Scene = field(default_factory=Scene)
+    edits: tuple[Edit, ...] = ()
     amount: float = 1.0
-    paint: Path | None = None
+    mask: Path | None = None
     source: Path | None = None
     model_only: bool = False
-    colorspace: str = "auto"
-    ocio: str | None = None
+    colorspace: Space | None = None
     radius: str = "tissue"
-    frames: "tuple[Frame, ...]" = ()
-    again: bool = False
-    credits: tuple[str, ...] = ()
+    head: Head | None = None
 
-    def opened(self) -> "Skin":
-        """The skin, open."""
-        from cutis.render.skin import Skin
+    def __post_init__(self) -> None:
+        if self.radius not in RADII:
+            raise CutisError(f"--radius must be {' or '.join(RADII)}, not {self.radius!r}")
+        Step(self.edits, self.amount)
 
-        return Skin(
-            self.skin, source=self.source, model_only=self.model_only, paint=self.paint,
-            colorspace=self.colorspace, ocio=self.ocio,
-        )  # fmt: skip
+    @contextlib.contextmanager
+    def opened(self) -> Iterator[tuple[Skin, tuple[Change, ...]]]:
+        """The skin, open, and the changes that the edits are."""
+        with contextlib.ExitStack() as stack:
+            space = self.colorspace or "auto"
+            skin = Skin(self.skin, source=self.source, model_only=self.model_only, colorspace=space)
+            stack.enter_context(skin)
+            if self.head is not None:
+                _check_fit(skin, self.head)
+            yield skin, self.changes(skin, self.edits, stack)
+
+    def changes(
+        self, skin: Skin, edits: tuple[Edit, ...], stack: contextlib.ExitStack
+    ) -> tuple[Change, ...]:
+        """Edits as they apply here; the mask is open for as long as the stack is."""
+        if not edits:
+            return ()
+        mask = None
+        if self.mask is not None:
+            mask = stack.enter_context(MaskFile(self.mask, skin.shape))
+        return (Step(edits, self.amount, mask),)
+
+    def inputs(self) -> dict[str, Path | None]:
+        """All files that are read, by what they are called."""
+        scene = self.scene
+        maybe = {"mesh": scene.mesh, "normal map": scene.normal, "roughness map": scene.roughness}
+        found = {f"the {what}": p for what, p in maybe.items() if isinstance(p, Path)}
+        return {
+            "the skin to render": self.skin, "the mask": self.mask, "the capture": self.source,
+            **found,
+        }  # fmt: skip
 
 
 @dataclass
 class Rendered:
-    """What came of an order: pictures written now, those that were there, and by which device."""
+    """What came of it: pictures written now, those that were there, by which device, whose."""
 
     written: list[Path] = field(default_factory=list)
     there: list[Path] = field(default_factory=list)
     animation: Path | None = None
     device: str = ""
+    credits: tuple[str, ...] = ()
 
 
-def render_pictures(order: Order, blender: "Blender", progress: Progress) -> Rendered:
-    """Renders what is missing of an order; a sequence that was stopped goes on."""
-    from cutis.render.cycles_process import render
-    from cutis.render.display import write_animation, write_picture
-    from cutis.render.finished import Finished, digest
-    from cutis.render.frames import Frame, file_names
-    from cutis.textures import read_texture, sweep
+@dataclass(frozen=True)
+class RenderJob:
+    """A picture of a subject, or the `frames` of a sequence, whose name `output` gives.
 
-    frames = list(order.frames) or [Frame(1)]
-    stem, suffix = order.output.with_suffix(""), order.output.suffix
-    sequence = bool(order.frames)
-    sweep(order.output.parent)
-    names = [order.output]
-    if sequence:
-        names = [Path(name) for _, name in file_names(frames, str(stem), suffix)]
-    result, log = Rendered(), Finished(Path(f"{stem}.frames.json"))
-    with order.opened() as skin, tempfile.TemporaryDirectory(prefix="cutis-") as folder:
-        base = _recipe(order, skin, blender) if sequence else {}
-        feeds = _Feeds(order, skin, Path(folder))
-        recipes: dict[Path, tuple[Path, str]] = {}
-        every: list[str] = []
-        todo: list[tuple[Scene, Path]] = []
-        for frame, name in zip(frames, names, strict=True):
-            recipe = digest(base | {"turn": frame.turn, "edits": [str(e) for e in frame.edits]})
-            every.append(recipe)
-            if sequence and not order.again and log.has(name, recipe):
-                result.there.append(name)
-                continue
-            progress(len(todo), len(frames), "writing textures")
-            light = Path(folder) / f"{name.stem}.exr"
-            todo.append((feeds.scene(frame), light))
-            recipes[light] = name, recipe
+    A sequence that was stopped goes on where it was; `again` makes its pictures anew. `blender` is
+    the program to use, None for the one that is found.
+    """
 
-        def keep(light: Path) -> None:
-            name, recipe = recipes[light]
-            texture = read_texture(light)
-            notes = {"ImageDescription": f"rendered by cutis from {order.skin.name}"}
-            if order.credits:
-                notes["Copyright"] = "; ".join(order.credits)
-            log.drop(name)  # a stop between the two must not leave it under another recipe
-            write_picture(texture.linear(), name, notes)
-            light.unlink()
-            if sequence:
-                log.put(name, recipe)
-            result.written.append(name)
+    subject: Subject
+    output: Path = field(metadata={"result": False})
+    frames: tuple[Frame, ...] = ()
+    again: bool = field(default=False, metadata={"result": False})
+    blender: Path | None = None
 
-        result.device = render(todo, blender, progress, keep)
-    if sequence:
-        result.animation = Path(f"{stem}.webp")
-        film = digest({"frames": every, "suffix": suffix})
-        if not log.has(result.animation, film):
-            progress(1, 1, "moving preview")
-            log.drop(result.animation)
-            write_animation(names, result.animation)
-            log.put(result.animation, film)
-    return result
+    def __post_init__(self) -> None:
+        format_of(self.output)
+
+    def digest(self) -> str:
+        """SHA-256 of all that the result depends on."""
+        return digest_of(self)
+
+    def run(self, progress: Progress = nobody) -> Rendered:
+        """Renders what is missing."""
+        subject, sequence = self.subject, bool(self.frames)
+        frames = list(self.frames) or [Frame(1)]
+        stem, suffix = self.output.with_suffix(""), self.output.suffix
+        names = [self.output]
+        if sequence:
+            names = [Path(name) for _, name in file_names(frames, str(stem), suffix)]
+        check_outputs(names, subject.inputs())
+        blender = find_blender(self.blender)
+        sweep(self.output.parent)
+        result, log = Rendered(), Finished(Path(f"{stem}.frames.json"))
+        with (
+            subject.opened() as (skin, changes),
+            tempfile.TemporaryDirectory(prefix="cutis-") as folder,
+            contextlib.ExitStack() as stack,
+        ):
+            check_outputs(
+                names, {"the capture": None if skin.capture is None else skin.capture.path}
+            )
+            result.credits = credits_of(subject.scene.mesh, *skin.origins())
+            base = _recipe(subject, skin, blender) if sequence else {}
+            feeds = _Feeds(subject, skin, changes, Path(folder), stack)
+            recipes: dict[Path, tuple[Path, str]] = {}
+            every: list[str] = []
+            todo: list[tuple[Scene, Path]] = []
+            for frame, name in zip(frames, names, strict=True):
+                step = {"turn": frame.turn, "edits": [str(e) for e in frame.edits]}
+                recipe = recipe_digest(base | step)
+                every.append(recipe)
+                if sequence and not self.again and log.has(name, recipe):
+                    result.there.append(name)
+                    continue
+                progress(len(todo), len(frames), "writing textures")
+                light = Path(folder) / f"{name.stem}.exr"
+                todo.append((feeds.scene(frame), light))
+                recipes[light] = name, recipe
+
+            def keep(light: Path) -> None:
+                name, recipe = recipes[light]
+                texture = read_texture(light)
+                notes = {"ImageDescription": f"rendered by cutis from {subject.skin.name}"}
+                if result.credits:
+                    notes["Copyright"] = "; ".join(result.credits)
+                log.drop(name)  # a stop between the two must not leave it under another recipe
+                write_picture(texture.linear(), name, notes)
+                light.unlink()
+                if sequence:
+                    log.put(name, recipe)
+                result.written.append(name)
+
+            result.device = render(todo, blender, progress, keep)
+        if sequence:
+            result.animation = Path(f"{stem}.webp")
+            film = recipe_digest({"frames": every, "suffix": suffix})
+            if not log.has(result.animation, film):
+                progress(1, 1, "moving preview")
+                log.drop(result.animation)
+                write_animation(names, result.animation)
+                log.put(result.animation, film)
+        return result
 
 
-def export_to(
-    order: Order, folder: Path, blender: Path | None, progress: Progress
-) -> tuple[Path, ...]:
-    """Writes the skin's material into a folder; the .blend only where a Blender is found.
+@dataclass(frozen=True)
+class Material:
+    """The files of a material that was written, and whose they are."""
+
+    files: tuple[Path, ...]
+    credits: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class MaterialJob:
+    """The material of a subject into a folder; the .blend only where a Blender is found.
 
     A Blender that is named and does not work is an error.
     """
-    from cutis.apps.options import made_folder
-    from cutis.render.blender import find_blender
-    from cutis.render.material_export import export_material
-    from cutis.render.medium import mean_free_path, of_maps
 
-    try:
-        found = find_blender(blender)
-    except CutisError:
-        if blender is not None or os.environ.get("BLENDER"):
-            raise
-        found = None
-    g = order.scene.anisotropy
-    with made_folder(folder), order.opened() as skin:
-        red, green, blue = (float(length) for length in mean_free_path(g, skin.tissue))
-        everywhere = order.radius == "tissue"
-        radius = (red, green, blue) if everywhere else lambda maps: of_maps(maps, g)
-        return export_material(
-            skin, folder, skin.stem,
-            radius=radius,
-            anisotropy=g, millimetres=order.scene.millimetres_per_unit or METRE,
-            edits=order.edits, amount=order.amount, blender=found, progress=progress,
-            normal=order.scene.normal,
-            roughness=order.scene.roughness if isinstance(order.scene.roughness, Path) else None,
-        ).files  # fmt: skip
+    subject: Subject
+    folder: Path = field(metadata={"result": False})
+    blender: Path | None = None
+
+    def digest(self) -> str:
+        """SHA-256 of all that the result depends on."""
+        return digest_of(self)
+
+    def run(self, progress: Progress = nobody) -> Material:
+        """Writes the material."""
+        try:
+            found = find_blender(self.blender)
+        except CutisError:
+            if self.blender is not None or os.environ.get("BLENDER"):
+                raise
+            found = None
+        subject, scene = self.subject, self.subject.scene
+        g = scene.anisotropy
+        with made_folder(self.folder), subject.opened() as (skin, changes):
+            sweep(self.folder)
+            red, green, blue = (float(length) for length in mean_free_path(g, skin.tissue))
+            everywhere = subject.radius == "tissue"
+            files = export_material(
+                skin, self.folder, skin.stem,
+                radius=(red, green, blue) if everywhere else lambda maps: of_maps(maps, g),
+                anisotropy=g, millimetres=scene.millimetres_per_unit or METRE,
+                changes=changes, blender=found, progress=progress, normal=scene.normal,
+                roughness=scene.roughness if isinstance(scene.roughness, Path) else None,
+            ).files  # fmt: skip
+            return Material(files, credits_of(scene.mesh, *skin.origins()))
 
 
 class _Feeds:
     """Textures for Cycles in a folder, each written once however many frames share it."""
 
-    def __init__(self, order: Order, skin: "Skin", folder: Path) -> None:
-        self._order, self._skin, self._folder = order, skin, folder
+    def __init__(
+        self, subject: Subject, skin: Skin, changes: tuple[Change, ...], folder: Path,
+        stack: contextlib.ExitStack,
+    ) -> None:  # fmt: skip
+        self._subject, self._skin, self._folder = subject, skin, folder
+        self._changes, self._stack = changes, stack
         self._written: dict[Any, tuple[Path, Any]] = {}
 
-    def scene(self, frame: "Frame") -> "Scene":
+    def scene(self, frame: Frame) -> Scene:
         """The scene of a frame, with its textures."""
-        from cutis.render.cycles import INDEX, METHOD, facing
-
-        order = self._order
         if frame.edits not in self._written:
-            self._written[frame.edits] = self._write((*order.edits, *frame.edits))
+            more = self._subject.changes(self._skin, frame.edits, self._stack)
+            self._written[frame.edits] = self._write((*self._changes, *more))
         colour, radius = self._written[frame.edits]
-        scene = order.scene
+        scene = self._subject.scene
         return replace(
             scene, base_colour=colour, radius=radius, turn=scene.turn + frame.turn,
             method=METHOD, subsurface_ior=INDEX, facing=facing(scene.anisotropy),
         )  # fmt: skip
 
-    def _write(self, edits: "tuple[Edit, ...]") -> tuple[Path, Path]:
-        from cutis.render.cycles import base_colour, radius
-        from cutis.render.feed import write_feed
-        from cutis.render.medium import mean_free_path, of_maps
-
-        number, order = len(self._written), self._order
-        g = order.scene.anisotropy
+    def _write(self, changes: tuple[Change, ...]) -> tuple[Path, Path]:
+        number, subject = len(self._written), self._subject
+        g = subject.scene.anisotropy
         everywhere = mean_free_path(tissue=self._skin.tissue)
-        if order.radius == "maps" and self._skin.maps is None:
+        if subject.radius == "maps" and self._skin.maps is None:
             raise CutisError(
-                f"{order.skin.name} is a texture; --radius maps needs its maps (NAME.skin.exr), "
+                f"{subject.skin.name} is a texture; --radius maps needs its maps (NAME{MAPS}), "
                 "which cutis estimate makes"
             )
 
-        def colour(rows: "Rows") -> "NDArray[np.floating]":
+        def colour(rows: Rows) -> NDArray[np.floating]:
             return base_colour(rows.albedo, g)
 
-        def lengths(rows: "Rows") -> "NDArray[np.float32]":
-            mapped = order.radius == "maps" and rows.maps is not None
-            return radius(colour(rows), of_maps(rows.maps) if mapped else everywhere)  # type: ignore[arg-type]
+        def lengths(rows: Rows) -> NDArray[np.float32]:
+            mapped = subject.radius == "maps" and rows.maps is not None
+            return cycles_radius(colour(rows), of_maps(rows.maps) if mapped else everywhere)  # type: ignore[arg-type]
 
         written = self._folder / f"colour{number}.exr", self._folder / f"radius{number}.exr"
         for path, convert in zip(written, (colour, lengths), strict=True):
-            write_feed(self._skin, path, convert, edits, order.amount)
+            write_feed(self._skin, path, convert, changes)
         return written
 
 
-def _recipe(order: Order, skin: "Skin", blender: "Blender") -> dict[str, Any]:
+def _recipe(subject: Subject, skin: Skin, blender: Blender) -> dict[str, Any]:
     """All that every picture of a sequence depends on, as JSON holds it."""
-    from importlib.metadata import version
-
-    from cutis.maps.files import digest
-    from cutis.render.cycles import INDEX, METHOD, facing
-    from cutis.render.medium import mean_free_path
-
     script = resources.files("cutis.data").joinpath("blender", "scene.py")
-    scene, g = order.scene, order.scene.anisotropy
+    scene, g = subject.scene, subject.scene.anisotropy
     job = scene.job(Path("picture.exr"))
     for machine in ("output", "device", "base_colour", "turn"):
         del job[machine]
     files: dict[str, Path | None] = {
-        "skin": order.skin,
+        "skin": subject.skin,
         "capture": None if skin.maps is None or skin.capture is None else skin.capture.path,
-        "paint": order.paint,
+        "mask": subject.mask,
         "mesh": scene.mesh if isinstance(scene.mesh, Path) else None,
-        "ocio": Path(order.ocio) if order.ocio and Path(order.ocio).is_file() else None,
         **_beside(scene.mesh),
         "normal": scene.normal,
         "roughness": scene.roughness if isinstance(scene.roughness, Path) else None,
@@ -240,15 +313,12 @@ def _recipe(order: Order, skin: "Skin", blender: "Blender") -> dict[str, Any]:
         "version": version("cutis"),
         "blender": blender.version,
         "script": hashlib.sha256(script.read_bytes()).hexdigest(),
+        "subject": {
+            n: [one.asked, one.content] for n, one in told(subject).items() if n != "scene"
+        },
         "scene": job,
         "files": digests,
-        "edited": [str(edit) for edit in order.edits],
-        "amount": order.amount,
-        "radius": order.radius,
         "medium": [METHOD, INDEX, *facing(g), *mean_free_path(g, skin.tissue).tolist()],
-        "model_only": order.model_only,
-        "colorspace": order.colorspace,
-        "ocio": order.ocio,
         "first_turn": scene.turn,
     }
 
@@ -264,13 +334,14 @@ def _beside(mesh: str | Path) -> dict[str, Path | None]:
     return {f"beside {path.name}": path for path in there if path.suffix.lower() in suffixes}
 
 
-def check_fit(order: Order, ratio: float, head: str) -> None:
+def _check_fit(skin: Skin, head: Head) -> None:
     """CutisError where a texture has not the width : height of those of a bundled head."""
-    with order.opened() as skin:
-        height, width = skin.shape
+    with TextureFile(head.albedo) as texture:
+        ratio = texture.shape[1] / texture.shape[0]
+    height, width = skin.shape
     if abs(width / height / ratio - 1) > 0.01:
         raise CutisError(
-            f"{order.skin.name} is {width} × {height} texels; textures of the head {head} are "
+            f"{skin.path.name} is {width} × {height} texels; textures of the head {head.name} are "
             f"{ratio:.3g} times as wide as high, so these maps belong to another mesh: give it "
             "with --mesh"
         )

@@ -2,7 +2,7 @@
 
 A .cube has nothing before its grid but one curve per channel, and skin is a thin sheet in RGB, so
 most nodes lie where no skin is. The others are worth moving: nodes that lie *on* the edit leave
-every cell's error on one side, and the least-squares nodes of `lut_fit` halve it.
+every cell's error on one side, and the least-squares nodes of `node_fit` halve it.
 """
 
 from dataclasses import dataclass

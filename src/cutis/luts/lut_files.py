@@ -1,17 +1,24 @@
-"""LUT files: Resolve's .cube, and the operators of the Common LUT Format .clf [aces_clf]."""
+"""LUT files: Resolve's .cube, and the Common LUT Format .clf [aces_clf], written by OpenColorIO.
 
+Whatever is written is finite: programs read NaN as black, as white, or not at all.
+"""
+
+import math
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from xml.sax.saxutils import quoteattr
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cutis.errors import CutisError
 from cutis.textures.atomic import replacing
 from cutis.textures.problem import problem
 
 Array = NDArray[np.floating]
+Operator = Any
+"""A transform of OpenColorIO; the functions below make them."""
 
 FORMATS = (".cube", ".clf")
 """Extensions of LUTs that are written."""
@@ -24,10 +31,12 @@ def write_cube(
 
     `shaper` (m,) comes first, from values of 0 to 1 to places on the grid, where there is one.
     The title is a comment: OpenColorIO reads no shaper from a file with a TITLE. Raises CutisError
-    for names that cannot be written.
+    for names that cannot be written and for tables that are not finite.
     """
+    finite(table)
     lines = [f"# {' '.join(title.split())}".encode("ascii", "replace").decode()]
     if shaper is not None:
+        finite(shaper)
         lines += [f"LUT_1D_SIZE {len(shaper)}", "LUT_1D_INPUT_RANGE 0.0 1.0"]
     lines += [f"LUT_3D_SIZE {len(table)}"]
     if shaper is not None:
@@ -36,69 +45,98 @@ def write_cube(
     _write(path, ".cube", "\n".join(lines) + "\n")
 
 
-def write_clf(path: str | os.PathLike[str], operators: Sequence[str], title: str = "") -> None:
+def write_clf(path: str | os.PathLike[str], operators: Sequence[Operator], title: str = "") -> None:
     """Writes a .clf of `operators` in their order; those below make them.
 
     Raises CutisError for names that cannot be written.
     """
-    name, body = quoteattr(title or "edit"), "\n".join(operators)  # no empty names
-    _write(
-        path,
-        ".clf",
-        '<?xml version="1.0" encoding="UTF-8"?>\n'
-        f'<ProcessList id="cutis" compCLFversion="3.0" name={name}>\n'
-        f"{body}\n</ProcessList>\n",
-    )
+    import PyOpenColorIO as ocio
+
+    group = ocio.GroupTransform()
+    for operator in operators:
+        group.appendTransform(operator)
+    about = group.getFormatMetadata()
+    about.setID("cutis")
+    about.setName(title or "edit")
+    text = ""
+    if operators:
+        text = group.write("Academy/ASC Common LUT Format", ocio.Config.CreateRaw())
+    _write(path, ".clf", text)
 
 
-def srgb_curve(inverse: bool = False) -> str:
+def srgb_curve(inverse: bool = False) -> Operator:
     """Encoded sRGB → linear, or the inverse; negative values keep their slope."""
-    style = "monCurveRev" if inverse else "monCurveFwd"
-    return (
-        f'<Exponent {DEPTHS} style="{style}">'
-        '<ExponentParams exponent="2.4" offset="0.055"/></Exponent>'
-    )
+    import PyOpenColorIO as ocio
+
+    return ocio.ExponentWithLinearTransform(
+        gamma=[2.4, 2.4, 2.4, 1.0], offset=[0.055, 0.055, 0.055, 0.0],
+        negativeStyle=ocio.NEGATIVE_LINEAR, direction=_direction(inverse),
+    )  # fmt: skip
 
 
-def logarithm(offset: float, inverse: bool = False) -> str:
+def logarithm(offset: float, inverse: bool = False) -> Operator:
     """x → log(x + offset), natural, or the inverse."""
-    style = "logToLin" if inverse else "linToLog"
-    return (
-        f'<Log {DEPTHS} style="{style}">'
-        f'<LogParams base="{np.e:.15g}" linSideSlope="1" linSideOffset="{offset:.9g}" '
-        'logSideSlope="1" logSideOffset="0"/></Log>'
-    )
+    import PyOpenColorIO as ocio
+
+    found = ocio.LogAffineTransform(linSideOffset=[offset] * 3, direction=_direction(inverse))
+    found.setBase(math.e)
+    return found
 
 
-def matrix(values: Array, shift: Array) -> str:
+def matrix(values: Array, shift: Array) -> Operator:
     """(3,) → values (3, 3) @ it + shift (3,)."""
-    rows = np.hstack([values, shift[:, None]])
-    text = "\n".join(" ".join(f"{v:.10g}" for v in row) for row in rows)
-    return f'<Matrix {DEPTHS}><Array dim="3 4">\n{text}\n</Array></Matrix>'
+    import PyOpenColorIO as ocio
+
+    finite(values)
+    finite(shift)
+    square = np.eye(4)
+    square[:3, :3] = values
+    return ocio.MatrixTransform(matrix=square.ravel().tolist(), offset=[*map(float, shift), 0.0])
 
 
-def curves(values: Array) -> str:
+def curves(values: Array) -> Operator:
     """Three curves (m, 3) over 0 to 1, straight between their points."""
-    return (
-        f'<LUT1D {DEPTHS} interpolation="linear"><Array dim="{len(values)} 3">\n'
-        f"{_rows(values, 9)}\n</Array></LUT1D>"
-    )
+    import PyOpenColorIO as ocio
+
+    finite(values)
+    found = ocio.Lut1DTransform(length=len(values), inputHalfDomain=False)
+    return _table(found, values)
 
 
-def grid(table: Array) -> str:
+def grid(table: Array) -> Operator:
     """(n, n, n, 3) by the first, second and third channel, read trilinearly."""
-    size = len(table)
-    return (
-        f'<LUT3D {DEPTHS} interpolation="trilinear"><Array dim="{size} {size} {size} 3">\n'
-        f"{_rows(table.reshape(-1, 3))}\n</Array></LUT3D>"
-    )
+    import PyOpenColorIO as ocio
+
+    finite(table)
+    return _table(ocio.Lut3DTransform(gridSize=len(table)), table)
 
 
-DEPTHS = 'inBitDepth="32f" outBitDepth="32f"'
+def finite(values: Array) -> None:
+    """Raises CutisError where `values` are not all finite as float32."""
+    if not (np.abs(values) <= np.finfo(np.float32).max).all():
+        raise CutisError(
+            "this edit gives colours that are no numbers, so there is no LUT of it; look at the "
+            "calibration of the maps (cutis info) and at the colour space"
+        )
 
 
-def _rows(values: Array, digits: int = 7) -> str:
-    line = " ".join([f"%.{digits}f"] * values.shape[-1])
+def _table(found: Operator, values: Array) -> Operator:
+    import PyOpenColorIO as ocio
+
+    found.setFileOutputBitDepth(ocio.BIT_DEPTH_F32)
+    found.setInterpolation(ocio.INTERP_LINEAR)
+    found.setData(np.ascontiguousarray(values, dtype=np.float32).ravel())
+    return found
+
+
+def _direction(inverse: bool) -> Any:
+    import PyOpenColorIO as ocio
+
+    return ocio.TRANSFORM_DIR_INVERSE if inverse else ocio.TRANSFORM_DIR_FORWARD
+
+
+def _rows(values: Array) -> str:
+    line = " ".join(["%.7f"] * values.shape[-1])
     return "\n".join(line % tuple(row) for row in values.tolist())
 
 

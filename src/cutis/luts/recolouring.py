@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 from cutis.colour import delta_e
 from cutis.errors import CutisError
 from cutis.inverse.calibration import Calibration
-from cutis.inverse.models import load_model
+from cutis.inverse.model import Model
+from cutis.maps.defaults import DEFAULT, load_model
 from cutis.maps.edits import Edit
-from cutis.maps.skin_maps import DARKEST
+from cutis.maps.relighting import DARKEST
 from cutis.optics import NAMES, RARE_NAMES
 
 WHOLE, NONE = 8.0, 20.0
@@ -28,7 +29,7 @@ Recolouring = Callable[[NDArray[np.floating]], NDArray[np.float32]]
 
 def recolouring(
     edits: Sequence[Edit],
-    model: str = "default",
+    model: Model | str = DEFAULT,
     calibration: Calibration | None = None,
     amount: float = 1.0,
 ) -> Recolouring:
@@ -42,6 +43,8 @@ def recolouring(
     for edit in edits:
         if edit.where != "everywhere":
             raise CutisError(f"{edit}: a LUT cannot tell places apart; leave this edit out")
+        if isinstance(edit.amount, np.ndarray):
+            raise CutisError(f"{edit}: a LUT cannot tell places apart; give one amount for all")
     known = calibration or Calibration()
     light = replace(known, gains=(1.0, 1.0, 1.0))
     inverse = load_model(model)

@@ -14,22 +14,21 @@ sRGB: what is not explained is then multiplied by at most STEEPEST. What is not 
 spectrum; it goes through `colour.light_conversion`, and the mask blends between the two.
 """
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
-from cutis.colour import illuminant, light_conversion
+from cutis.colour import LightLike, illuminant, light_conversion
 from cutis.errors import CutisError
 from cutis.inverse.calibration import Calibration, to_d65
+from cutis.maps.exact import exact
+from cutis.maps.plain import Maps
 from cutis.optics import Tissue
-
-if TYPE_CHECKING:
-    from cutis.maps.skin_maps import SkinMaps
 
 Array = NDArray[np.float32]
 STEEPEST = np.float32(4)
 """Most that a channel's residual is multiplied by."""
+DARKEST = np.float32(1e-4)
+"""Model albedo that ratios are taken over at least, so that they stay finite."""
 
 
 class Relighting:
@@ -39,8 +38,8 @@ class Relighting:
     unknown lights, and those that no camera can be balanced on.
     """
 
-    def __init__(self, calibration: Calibration, tissue: Tissue, light: str) -> None:
-        self._light, self._calibration = light, calibration
+    def __init__(self, calibration: Calibration, tissue: Tissue, light: LightLike) -> None:
+        self._light, self._calibration, self._tissue = light, calibration, tissue
         self._before, self.changes = _light_of(calibration, tissue), True
         other = light_conversion("D65", light)
         if self._before is None:
@@ -51,33 +50,36 @@ class Relighting:
             self.changes = not np.array_equal(illuminant(self._before), illuminant(light))
         self._other = other.T.astype(np.float32)
 
-    def __call__(self, skin: "SkinMaps", source: Array) -> Array:
-        """(h, W, 3) linear sRGB of rows of `skin`, whose capture `source` (h, W, 3) is."""
-        from cutis.maps.skin_maps import DARKEST
-
+    def __call__(self, before: Maps, after: Maps, source: Array) -> Array:
+        """(h, W, 3) linear sRGB of rows of maps, edited or not, whose capture `source` is."""
         result = np.asarray(source @ self._other, dtype=np.float32)
-        inside = skin.mask > 0
-        new, old = skin.colours_under(self._light), self._captured(skin.original or skin)
+        inside = before.mask > 0
+        new, old = self._under(after, self._light), self._captured(before)
         gains = np.array(self._calibration.gains, np.float32)
         # source · new / old, as a sum so that it holds where old is 0
         ratio = np.clip(new / np.maximum(old, DARKEST), 0, STEEPEST)
         relit = (new + (source[inside] * gains - old) * ratio) / gains
-        result[inside] += skin.mask[inside][:, None] * (relit - result[inside])
+        result[inside] += before.mask[inside][:, None] * (relit - result[inside])
         return result
 
-    def alone(self, skin: "SkinMaps") -> Array:
+    def alone(self, maps: Maps) -> Array:
         """(h, W, 3) what the model gives under the light, gains undone; 0 off the mask."""
-        result = np.zeros((*skin.shape, 3), dtype=np.float32)
+        result = np.zeros((*maps.shape, 3), dtype=np.float32)
         gains = np.array(self._calibration.gains, np.float32)
-        result[skin.mask > 0] = skin.colours_under(self._light) / gains
+        result[maps.mask > 0] = self._under(maps, self._light) / gains
         return result
 
-    def _captured(self, skin: "SkinMaps") -> Array:
+    def _under(self, maps: Maps, light: LightLike) -> Array:
+        """(n, 3) linear sRGB of the texels of the mask under a light, balanced on it."""
+        space, skins = exact(self._tissue, maps)
+        return space.rgb(skins, light)
+
+    def _captured(self, maps: Maps) -> Array:
         """(n, 3) colours of the texels of the mask under the light of the capture."""
         if self._before is not None:
-            return skin.colours_under(self._before)
+            return self._under(maps, self._before)
         back = np.linalg.inv(np.array(self._calibration.conversion)).T.astype(np.float32)
-        return np.asarray(skin.colours_under("D65") @ back, dtype=np.float32)
+        return np.asarray(self._under(maps, "D65") @ back, dtype=np.float32)
 
 
 def _light_of(calibration: Calibration, tissue: Tissue) -> str | None:

@@ -1,144 +1,206 @@
-"""Skin maps: what `estimate` returns, what people edit, what becomes albedo again."""
+"""Skin maps: what `estimate` returns, what people edit, what becomes albedo again.
 
+There are two kinds. An `Estimate` is what a model found in a capture; an `EditedEstimate` is an
+estimate with changes, which are worked out when somebody looks at them. Both do what `SkinMaps`
+says.
+"""
+
+import abc
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from cutis.colour import LightLike
 from cutis.errors import CutisError
 from cutis.inverse.calibration import Calibration
-from cutis.inverse.models import load_model, model_name, tissue_of
+from cutis.inverse.model import Model, State
+from cutis.maps import colours
+from cutis.maps.changes import Change, Step, Tile
+from cutis.maps.defaults import DEFAULT, load_model
 from cutis.maps.edits import Edit
-from cutis.maps.patches import patches
-from cutis.maps.statistics import MapStatistics, coordinates
-from cutis.optics import NAMES, RARE_NAMES, Tissue, parameter, with_rare_chromophores
+from cutis.maps.plain import Map, Maps, read_only
+from cutis.maps.statistics import MapStatistics
+from cutis.maps.writing import save_maps
+from cutis.optics import NAMES, Tissue, parameter
 from cutis.textures.texture import Texture, bands
 
-if TYPE_CHECKING:
-    from cutis.albedo import AlbedoSpace
-    from cutis.maps.relighting import Relighting
 
-Map = NDArray[np.float32]
+class MapOf:
+    """An attribute that is one of the maps: `skin.melanin`; None for a rare one that is not set."""
 
-DARKEST = np.float32(1e-4)
-"""Model albedo that ratios are taken over at least, so that they stay finite."""
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+        self.__doc__ = parameter(name).meaning
+
+    def __get__(self, skin: "SkinMaps | None", owner: type | None = None) -> Any:
+        return self if skin is None else skin.maps.values.get(self._name)
 
 
-@dataclass(frozen=True, eq=False)
-class SkinMaps:
+@dataclass(frozen=True)
+class MadeBy:
+    """The model of maps: its name, its digest where that is known, and the model once loaded."""
+
+    name: str
+    digest: str = ""
+    loaded: Model | None = field(default=None, compare=False, repr=False)
+
+    @classmethod
+    def of(cls, model: Model) -> "MadeBy":
+        """A model that is here."""
+        return cls(model.name, model.digest, model)
+
+    def load(self) -> Model:
+        """The model; CutisError where there is none of that name."""
+        return load_model(self.name) if self.loaded is None else self.loaded
+
+
+class SkinMaps(abc.ABC):
     """Five maps of what a skin is made of, float32 (H, W), in the units of `optics.PARAMETERS`.
 
-    `bilirubin`, `carotene` and `methaemoglobin` are maps of the rare chromophores (`optics.RARE`),
-    None where no edit or fit has set them: what the tissue itself holds, 0 in those maps.
-    `mask` (H, W) in [0, 1] says where they hold; maps are 0 where it is 0. `calibration` was
-    applied to the capture before the estimate, by the model called `model` (the name that `default`
-    stands for, if that is given). `source` is the capture, linear sRGB (H, W, 3), or None when only
-    the maps were loaded. `original` is the estimate that this was edited from, None for an estimate
-    itself; `edits` what was done since, and `clamped` how many texels each edit pushed against the
-    end of a range. `provenance` is free text for the file header. Of some rows of a larger image,
-    `first_row` is the number of the first and `whole` the (H, W) of all. `sigmas` has the standard
-    deviation (H, W) of maps, by name and in their units, where the model knows it, and
-    `confidence` (H, W) in [0, 1] how likely each colour is one of skin; see `sigma`.
+    `melanin`, `blood`, `thickness`, `eumelanin`, `oxygenation`; `bilirubin`, `carotene` and
+    `methaemoglobin` are maps of the rare chromophores (`optics.RARE`), None where no edit or fit
+    has set them: what the tissue itself holds. `mask` (H, W) in [0, 1] says where they hold; maps
+    are 0 where it is 0.
+
+    `calibration` was applied to the capture before the estimate, by `model`. `source` is the
+    capture, linear sRGB (H, W, 3), or None when only the maps were loaded. `original` is the
+    estimate that this was edited from, None for an estimate itself; `edits` what was done since,
+    and `clamped` how many texels each edit pushed against the end of a range. `provenance` is free
+    text for the file header. `sigmas` has the standard deviation (H, W) of maps, by name and in
+    their units, where the model knows it, and `confidence` (H, W) in [0, 1] how likely each colour
+    is one of skin; see `sigma`.
 
     All arrays are read-only: a map changed in place would not count as an edit.
     """
 
-    melanin: Map
-    blood: Map
-    thickness: Map
-    eumelanin: Map
-    oxygenation: Map
-    mask: Map
-    calibration: Calibration = field(default_factory=Calibration)
-    model: str = "default"
-    source: Map | None = None
-    original: "SkinMaps | None" = None
-    edits: tuple[str, ...] = ()
-    clamped: tuple[int, ...] = ()
-    provenance: Mapping[str, str] = field(default_factory=dict)
-    first_row: int = 0
-    whole: tuple[int, int] | None = None
-    bilirubin: Map | None = None
-    carotene: Map | None = None
-    methaemoglobin: Map | None = None
-    sigmas: Mapping[str, Map] = field(default_factory=dict)
-    confidence: Map | None = None
+    melanin = MapOf()
+    blood = MapOf()
+    thickness = MapOf()
+    eumelanin = MapOf()
+    oxygenation = MapOf()
+    bilirubin = MapOf()
+    carotene = MapOf()
+    methaemoglobin = MapOf()
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "model", model_name(self.model))
-        for name in (*NAMES, *RARE_NAMES, "mask", "source", "confidence"):
-            if getattr(self, name) is not None:
-                object.__setattr__(self, name, self._view(name, getattr(self, name)))
-        sigmas = {name: self._view(f"σ of {name}", found) for name, found in self.sigmas.items()}
-        object.__setattr__(self, "sigmas", sigmas)
-
-    def _view(self, name: str, values: Map) -> Map:
-        """A view that cannot be written to; CutisError where it is of another size than the maps"""
-        view = np.asarray(values, dtype=np.float32).view()
-        view.flags.writeable = False
-        shape = np.shape(self.melanin)
-        if view.shape != ((*shape, 3) if name == "source" else shape) or len(shape) != 2:
-            raise CutisError(f"{name} is {view.shape}, the maps are {shape}")
-        return view
+    # what there is -----------------------------------------------------------------------------
 
     @property
-    def shape(self) -> tuple[int, int]:
-        """Height and width in texels."""
-        return self.melanin.shape[0], self.melanin.shape[1]
+    @abc.abstractmethod
+    def maps(self) -> Maps:
+        """The maps by name, with mask and place."""
+
+    @property
+    @abc.abstractmethod
+    def sigmas(self) -> Mapping[str, Map]:
+        """Standard deviations (H, W) by name, as far as they are known."""
+
+    @property
+    @abc.abstractmethod
+    def estimate(self) -> "Estimate":
+        """The estimate without edits."""
+
+    @property
+    @abc.abstractmethod
+    def edits(self) -> tuple[str, ...]:
+        """What was done to the estimate, a line each."""
+
+    @property
+    @abc.abstractmethod
+    def clamped(self) -> tuple[int, ...]:
+        """Of each of `edits`, how many texels it pushed against the end of a range."""
+
+    @abc.abstractmethod
+    def rows(self, rows: slice) -> "SkinMaps":
+        """The maps of some rows, capture and original included."""
+
+    @abc.abstractmethod
+    def with_capture(
+        self, capture: Map | None, notes: Mapping[str, str] | None = None
+    ) -> "SkinMaps":
+        """The same with the capture that it is of, and what is known of that."""
+
+    @abc.abstractmethod
+    def by_model(self, model: Model) -> "SkinMaps":
+        """The same maps, whose colours another model tells."""
+
+    @abc.abstractmethod
+    def changed_by(self, change: Change) -> "EditedEstimate":
+        """These maps with a change on top."""
+
+    @property
+    def original(self) -> "Estimate | None":
+        """The estimate that this was edited from; None for an estimate itself."""
+        return None if self.estimate is self else self.estimate
+
+    @property
+    def mask(self) -> Map:
+        """(H, W) in [0, 1]: where the maps hold."""
+        return self.maps.mask
+
+    @property
+    def confidence(self) -> Map | None:
+        """(H, W) in [0, 1]: how likely each colour is one of skin; None where not known."""
+        return self.estimate.sure
+
+    @property
+    def calibration(self) -> Calibration:
+        """Light and gains of the capture."""
+        return self.estimate.calibrated
+
+    @property
+    def source(self) -> Map | None:
+        """The capture (H, W, 3), linear sRGB; None where it is not at hand."""
+        return self.estimate.capture
+
+    @property
+    def provenance(self) -> Mapping[str, str]:
+        """Where the maps are from: free text."""
+        return self.estimate.notes
+
+    @property
+    def made_by(self) -> MadeBy:
+        """The model by name and digest, whether or not it is here."""
+        return self.estimate.by
+
+    @property
+    def model(self) -> Model:
+        """The model; CutisError where it is not here any more."""
+        return self.made_by.load()
 
     @property
     def tissue(self) -> Tissue:
         """The tissue that these skins are of: that of the model."""
-        return tissue_of(self.model)
+        return self.model.tissue
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Height and width in texels."""
+        return self.maps.shape
 
     @property
     def rare(self) -> tuple[str, ...]:
         """Names of the rare chromophores that have a map."""
-        return tuple(name for name in RARE_NAMES if getattr(self, name) is not None)
+        return self.maps.rare
+
+    def map(self, name: str) -> Map:
+        """(H, W) the map called `name`, of 0 for a rare chromophore that has none."""
+        return self.maps[name]
 
     def parameters(self, rows: slice | None = None, names: Sequence[str] = NAMES) -> Map:
         """(H, W, 5) parameters, or those of some rows, or others by name; 0 where there is no map.
 
         Rare chromophores are among them where `names` says so, as NAMES + RARE_NAMES does.
         """
-        rows = slice(None) if rows is None else rows
-        return np.stack([self.map(name)[rows] for name in names], axis=-1)
-
-    def map(self, name: str) -> Map:
-        """(H, W) the map called `name`, of 0 for a rare chromophore that has none."""
-        values: Map | None = getattr(self, name)
-        return np.zeros(self.shape, dtype=np.float32) if values is None else values
-
-    def _names(self) -> tuple[str, ...]:
-        """What the colours of these maps depend on."""
-        return (*NAMES, *RARE_NAMES) if self.rare else NAMES
-
-    def rows(self, rows: slice) -> "SkinMaps":
-        """The maps of some rows, capture and original included."""
-        first = rows.indices(self.shape[0])[0]
-        names = (*NAMES, *self.rare, "mask")
-        parts: dict[str, Any] = {name: getattr(self, name)[rows] for name in names}
-        result = replace(
-            self,
-            **parts,
-            source=None if self.source is None else self.source[rows],
-            original=None if self.original is None else self.original.rows(rows),
-            first_row=self.first_row + first,
-            whole=self.whole or self.shape,
-            sigmas={name: sigma[rows] for name, sigma in self.sigmas.items()},
-            confidence=None if self.confidence is None else self.confidence[rows],
-        )
-        if "model_albedo" in self.__dict__:  # decoded already
-            result.__dict__["model_albedo"] = self.model_albedo[rows]
-        return result
+        return (self.maps if rows is None else self.maps.rows(rows)).parameters(names)
 
     def coordinates(self) -> Map:
         """(H, W, 5) network coordinates where the mask is not 0, else 0."""
-        return coordinates([getattr(self, name) for name in NAMES], self.mask > 0)
+        return self.maps.coordinates()
 
     def sigma(self, name: str) -> Map:
         """(H, W) standard deviation of a map in its unit, 0 off the mask: `skin.sigma("melanin")`.
@@ -150,108 +212,78 @@ class SkinMaps:
         if name not in self.sigmas:
             parameter(name)
             raise CutisError(
-                f"these maps have no σ of {name}: {self.model} does not know it, or they were made "
-                "without; estimate again"
+                f"these maps have no σ of {name}: {self.made_by.name} does not know it, or they "
+                "were made without; estimate again"
             )
         return self.sigmas[name]
 
-    # editing --------------------------------------------------------------------------------
+    def statistics(self) -> Iterator[tuple[str, str, float, float, float]]:
+        """(name, unit, 5th percentile, median, 95th percentile) of each map inside the mask."""
+        found = MapStatistics()
+        for rows in bands(self.shape):
+            part = self.maps.rows(rows)
+            found.add(part.coordinates(), part.mask > 0)
+        for name, (low, median, high) in found.percentiles().items():
+            yield name, parameter(name).unit, low, median, high
 
-    def multiply(self, *, where: ArrayLike | None = None, **factors: float) -> "SkinMaps":
-        """Multiplies maps by factors: `skin.multiply(melanin=1.4)`."""
-        return self.apply([Edit(k, "multiply", v) for k, v in factors.items()], where)
+    # editing -----------------------------------------------------------------------------------
 
-    def offset(self, *, where: ArrayLike | None = None, **amounts: float) -> "SkinMaps":
-        """Adds amounts in the parameter's unit: `skin.offset(thickness=-20)`."""
-        return self.apply([Edit(k, "offset", v) for k, v in amounts.items()], where)
+    def multiply(self, *, where: ArrayLike | None = None, **factors: ArrayLike) -> "EditedEstimate":
+        """Multiplies maps by factors: `skin.multiply(melanin=1.4)`; numbers or (H, W) arrays."""
+        return self.apply([_edit(k, "multiply", v) for k, v in factors.items()], where)
 
-    def replace(self, *, where: ArrayLike | None = None, **values: float) -> "SkinMaps":
-        """Sets maps to values: `skin.replace(eumelanin=0.001)`."""
-        return self.apply([Edit(k, "set", v) for k, v in values.items()], where)
+    def offset(self, *, where: ArrayLike | None = None, **amounts: ArrayLike) -> "EditedEstimate":
+        """Adds amounts in the parameter's unit: `skin.offset(thickness=-20)`; numbers or arrays."""
+        return self.apply([_edit(k, "offset", v) for k, v in amounts.items()], where)
+
+    def replace(self, *, where: ArrayLike | None = None, **values: ArrayLike) -> "EditedEstimate":
+        """Sets maps to values: `skin.replace(eumelanin=0.001)`; numbers or (H, W) arrays."""
+        return self.apply([_edit(k, "set", v) for k, v in values.items()], where)
 
     def blend(
-        self, amount: float, *, where: ArrayLike | None = None, **values: float
-    ) -> "SkinMaps":
+        self, amount: float, *, where: ArrayLike | None = None, **values: ArrayLike
+    ) -> "EditedEstimate":
         """Moves maps part of the way, `amount` in [0, 1], towards values."""
-        return self.apply([Edit(k, "set", v) for k, v in values.items()], where, amount=amount)
+        return self.apply([_edit(k, "set", v) for k, v in values.items()], where, amount=amount)
 
     def apply(
         self,
-        edits: Edit | tuple[Edit, ...] | list[Edit],
+        edits: Edit | Change | Sequence[Edit],
         where: ArrayLike | None = None,
         *,
         amount: float = 1.0,
-    ) -> "SkinMaps":
-        """Applies edits or a preset in order, inside the painted mask `where` (H, W), 0–1.
+    ) -> "EditedEstimate":
+        """Applies edits, a preset or any other `Change` in order, inside the mask `where`.
 
-        `amount` in [0, 1] blends between the old values and the new. A painted mask takes the
-        place of procedural patches. Values are clamped to range and counted in `clamped`. Texels
-        whose mask is 0 are never touched.
+        `where` (H, W) in [0, 1] takes the place of procedural patches; `amount` in [0, 1] blends
+        between the old values and the new. Values are clamped to range and counted in `clamped`.
+        Texels whose mask is 0 are never touched.
         """
-        if not 0 <= amount <= 1:
-            raise CutisError(f"the amount of an edit must lie in 0 to 1, not {amount:g}")
-        edits = [edits] if isinstance(edits, Edit) else list(edits)
-        everywhere = np.float32(amount) * self._weight(where)
-        how = (f", amount {amount:g}" if amount < 1 else "") + (
-            ", painted" if where is not None else ""
-        )
-        result = self
+        if isinstance(edits, Edit):
+            edits = (edits,)
+        if not isinstance(edits, Sequence):
+            if where is not None or amount != 1:
+                raise CutisError("a change of its own brings its amount and masks with it")
+            return self.changed_by(edits)
+        painted = None if where is None else np.asarray(where, dtype=np.float32)
+        if painted is not None and painted.shape != self.shape:
+            raise CutisError(f"the edit mask is {painted.shape}, the maps are {self.shape}")
         for edit in edits:
-            procedural = where is None and edit.where == "patches"
-            weight = everywhere * self._patches() if procedural else everywhere
-            edited, clamped = edit(result.map(edit.parameter), weight)
-            changes: dict[str, Any] = {edit.parameter: edited}
-            if edit.parameter in result.sigmas:
-                sigma = edit.sigma(result.sigmas[edit.parameter], weight)
-                changes["sigmas"] = {**result.sigmas, edit.parameter: sigma}
-            result = replace(
-                result,
-                **changes,
-                original=self.original or self,
-                edits=(*result.edits, str(edit) + how),
-                clamped=(*result.clamped, clamped),
-            )
-        return result
+            array = edit.amount
+            if isinstance(array, np.ndarray) and array.shape != self.shape:
+                raise CutisError(
+                    f"the amount of {edit.parameter} is {array.shape}, the maps are {self.shape}"
+                )
+        return self.changed_by(Step(tuple(edits), amount, painted))
 
-    def _patches(self) -> Map:
-        """(H, W) weights of procedural patches; those of the whole image, in some rows of it."""
-        rows = slice(self.first_row, self.first_row + self.shape[0])
-        return patches(self.whole or self.shape, rows)
-
-    def _weight(self, where: ArrayLike | None) -> Map:
-        """(H, W) 0–1: `where`, and nothing outside the skin."""
-        inside = (self.mask > 0).astype(np.float32)
-        if where is None:
-            return inside
-        weight = np.asarray(where, dtype=np.float32)
-        if weight.shape != self.shape:
-            raise CutisError(f"the edit mask is {weight.shape}, the maps are {self.shape}")
-        if not (np.isfinite(weight).all() and weight.min() >= 0 and weight.max() <= 1):
-            raise CutisError("the edit mask must hold values from 0 to 1")
-        return weight * inside
-
-    def save(self, path: str | os.PathLike[str], dtype: Literal["float", "half"] = "float") -> None:
-        """Writes maps and mask as channels of one EXR; `dtype` float (exact) or half."""
-        from cutis.maps.files import save_maps
-
-        save_maps(self, path, dtype)
-
-    # colour -----------------------------------------------------------------------------------
+    # colour ------------------------------------------------------------------------------------
 
     @cached_property
     def model_albedo(self) -> Map:
         """(H, W, 3) linear sRGB that the model alone gives, calibration undone; 0 off the mask."""
-        model = load_model(self.model)
-        result = np.zeros((*self.shape, 3), dtype=np.float32)
-        for rows in bands(self.shape):
-            inside = self.mask[rows] > 0
-            result[rows][inside] = self.calibration.undo(
-                model.decode(self.parameters(rows, self._names())[inside])
-            )
-        result.flags.writeable = False  # it is kept
-        return result
+        return colours.model_albedo(self.model, self.calibration, self.maps)
 
-    def albedo(self, illuminant: str | None = None) -> Map:
+    def albedo(self, illuminant: LightLike | None = None) -> Map:
         """(H, W, 3) linear sRGB as captured, edits included; relit where `illuminant` is given.
 
         What the model does not explain (hair, eyes, detail) rides along as the ratio of capture
@@ -261,65 +293,35 @@ class SkinMaps:
         `illuminant`, a name or file that `colour.illuminant` takes, shows the skin under that light
         and balanced on it (`maps.relighting`); the light of the capture changes nothing.
         """
-        relight = self._relighting(illuminant)
         if self.source is None:
-            return self.model_albedo.copy() if relight is None else relight.alone(self)
-        if relight is not None:
-            parts = (relight(self.rows(rows), self.source[rows]) for rows in bands(self.shape))
-            return np.concatenate(list(parts))
-        result = self.source.copy()
-        for rows in bands(self.shape):
-            changed, colours = self._changes(rows, self.source[rows])
-            result[rows][changed] = colours
-        return result
+            alone = colours.alone(self.model, self.calibration, self.maps, illuminant)
+            return self.model_albedo.copy() if alone is None else alone
+        look = self.recolouring(illuminant)
+        return np.concatenate([
+            look(self.rows(rows), self.source[rows])[1] for rows in bands(self.shape)
+        ])  # fmt: skip
 
-    def relit(self, illuminant: str) -> Map:
+    def relit(self, illuminant: LightLike) -> Map:
         """(H, W, 3) linear sRGB under another light, edits included: `albedo(illuminant)`."""
         return self.albedo(illuminant)
 
-    def retouch(self, texture: Texture, illuminant: str | None = None) -> Texture:
+    def retouch(self, texture: Texture, illuminant: LightLike | None = None) -> Texture:
         """The texture with the edits in it: same format, depth and space, other texels verbatim.
 
         With an `illuminant` all texels are as `albedo(illuminant)` shows them.
         """
         if texture.shape != self.shape:
             raise CutisError(f"the texture is {texture.shape}, the maps are {self.shape}")
-        relight = self._relighting(illuminant)
-        everywhere = np.full(self.shape, relight is not None)
-        colours = np.zeros((*self.shape, 3), dtype=np.float32)
+        look = self.recolouring(illuminant)
+        changed = np.zeros(self.shape, dtype=bool)
+        edited = np.zeros((*self.shape, 3), dtype=np.float32)
         for rows in bands(self.shape):
-            if relight is not None:
-                colours[rows] = relight(self.rows(rows), texture.rows(rows).linear())
-                continue
-            changed, edited = self._changes(rows, texture.rows(rows).linear())
-            everywhere[rows] = changed
-            colours[rows][changed] = edited
-        return texture.with_linear(colours, everywhere)
+            changed[rows], edited[rows] = look(self.rows(rows), texture.rows(rows).linear())
+        return texture.with_linear(edited, changed)
 
-    def _relighting(self, light: str | None) -> "Relighting | None":
-        """How to relight; None where the light is that of the capture."""
-        from cutis.maps.relighting import Relighting
-
-        found = None if light is None else Relighting(self.calibration, self.tissue, light)
-        return found if found is not None and found.changes else None
-
-    def _changes(self, rows: slice, source: Map) -> tuple[NDArray[np.bool_], Map]:
-        """Texels of some rows that edits changed, and their new colours (n, 3)."""
-        base = self.original or self
-        names = self._names() if self.rare else base._names()
-        before, after = base.parameters(rows, names), self.parameters(rows, names)
-        changed = (before != after).any(axis=-1) & (self.mask[rows] > 0)
-        new, old = (self._captured(skins[changed]) for skins in (after, before))
-        ratio = new / np.maximum(old, DARKEST)
-        cover = self.mask[rows][changed][:, None]
-        return changed, source[changed] * (1 + cover * (ratio - 1))
-
-    def _captured(self, skins: Map) -> Map:
-        """(n, 5 or 8) skins → (n, 3) colours under the light of the capture, gains left."""
-        colours = load_model(self.model).decode(skins)
-        if self.calibration.conversion is None:
-            return colours
-        return replace(self.calibration, gains=(1.0, 1.0, 1.0)).undo(colours)
+    def recolouring(self, illuminant: LightLike | None = None) -> "Recolouring":
+        """How rows of these maps change rows of their capture; made once for all of them."""
+        return Recolouring(self.model, self.calibration, illuminant)
 
     def residual(self) -> Map:
         """(H, W, 3) capture over model of the estimate: what the model does not explain, 1 = all.
@@ -328,48 +330,257 @@ class SkinMaps:
         """
         if self.source is None:
             raise CutisError("these maps came without their capture; read it and estimate again")
-        base = self.original or self
-        result = np.ones_like(self.source)
-        inside = self.mask > 0
-        result[inside] = self.source[inside] / np.maximum(base.model_albedo[inside], DARKEST)
-        return result
+        return colours.residual(self.source, self.estimate.model_albedo, self.mask)
 
     def reflectance(self, rows: slice | None = None) -> Map:
         """(H, W, 41) reflectance at `optics.WAVELENGTHS`, 0 off the mask.
 
-        It is that of the exact albedo space of `tissue`.
-
-        Of the maps alone: neither calibration nor what the model does not explain is in it.
-
-        A whole 2048² face takes 0.7 GB; give `rows` to go in bands.
+        It is that of the exact albedo space of `tissue`, of the maps alone: neither calibration nor
+        what the model does not explain is in it. A whole 2048² face takes 0.7 GB; give `rows` to go
+        in bands.
         """
-        part = self if rows is None else self.rows(rows)
-        space, skins = part._exact()
-        spectra = space.reflectance(skins)
-        result = np.zeros((*part.shape, spectra.shape[-1]), dtype=np.float32)
-        result[part.mask > 0] = spectra
-        return result
+        return colours.reflectance(self.tissue, (self if rows is None else self.rows(rows)).maps)
 
-    def colours_under(self, light: str) -> Map:
-        """(n, 3) linear sRGB of the texels of the mask, as `reflectance` has it under `light`.
+    def save(self, path: str | os.PathLike[str], dtype: Literal["float", "half"] = "float") -> None:
+        """Writes maps and mask as channels of one EXR; `dtype` float (exact) or half."""
+        save_maps(self, path, dtype)
 
-        Of the maps alone, and balanced on the light.
-        """
-        space, skins = self._exact()
-        return space.rgb(skins, light)
+    def __repr__(self) -> str:
+        height, width = self.shape
+        cover = float(np.mean(self.mask > 0)) if self.mask.size else 0.0
+        done = f", {len(self.edits)} edits" if self.edits else ""
+        known = "" if self.source is not None else ", without its capture"
+        return (
+            f"<skin maps of {width} × {height} texels, {100 * cover:.0f} % skin, by "
+            f"{self.made_by.name}{done}{known}>"
+        )
 
-    def _exact(self) -> "tuple[AlbedoSpace, Map]":
-        """The exact albedo space, and the skins (n, 5 or 8) of the texels of the mask."""
-        from cutis.albedo import albedo_space
 
-        skins = self.parameters(names=self._names())[self.mask > 0]
-        tissue = with_rare_chromophores(self.tissue) if self.rare else self.tissue
-        return albedo_space(tissue), skins
+@dataclass(frozen=True, eq=False, repr=False)
+class Estimate(SkinMaps):
+    """What a model found in a capture.
 
-    def statistics(self) -> Iterator[tuple[str, str, float, float, float]]:
-        """(name, unit, 5th percentile, median, 95th percentile) of each map inside the mask."""
-        found = MapStatistics()
-        for rows in bands(self.shape):
-            found.add(self.rows(rows).coordinates(), self.mask[rows] > 0)
-        for name, (low, median, high) in found.percentiles().items():
-            yield name, parameter(name).unit, low, median, high
+    `found` are the maps, `spread` their σ by name, `sure` the confidence, `capture` the colours
+    (H, W, 3) that they were found in, `by` the model, `state` what its survey found (`inverse`).
+    """
+
+    found: Maps
+    by: MadeBy
+    calibrated: Calibration = field(default_factory=Calibration)
+    spread: Mapping[str, Map] = field(default_factory=dict)
+    sure: Map | None = None
+    capture: Map | None = None
+    notes: Mapping[str, str] = field(default_factory=dict)
+    state: State = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        shape = self.found.shape
+        spread = {n: read_only(f"σ of {n}", values, shape) for n, values in self.spread.items()}
+        object.__setattr__(self, "spread", spread)
+        for name, size in (("sure", shape), ("capture", (*shape, 3))):
+            values = getattr(self, name)
+            if values is not None:
+                told = "confidence" if name == "sure" else "source"
+                object.__setattr__(self, name, read_only(told, values, size))
+
+    @property
+    def maps(self) -> Maps:
+        """What was found."""
+        return self.found
+
+    @property
+    def sigmas(self) -> Mapping[str, Map]:
+        """Standard deviations by name."""
+        return self.spread
+
+    @property
+    def estimate(self) -> "Estimate":
+        """Itself."""
+        return self
+
+    @property
+    def edits(self) -> tuple[str, ...]:
+        """None."""
+        return ()
+
+    @property
+    def clamped(self) -> tuple[int, ...]:
+        """None."""
+        return ()
+
+    def rows(self, rows: slice) -> "Estimate":
+        """The estimate of some rows."""
+        part = replace(
+            self,
+            found=self.found.rows(rows),
+            spread={name: values[rows] for name, values in self.spread.items()},
+            sure=None if self.sure is None else self.sure[rows],
+            capture=None if self.capture is None else self.capture[rows],
+        )
+        if "model_albedo" in self.__dict__:  # decoded already
+            part.__dict__["model_albedo"] = self.model_albedo[rows]
+        return part
+
+    def with_capture(
+        self, capture: Map | None, notes: Mapping[str, str] | None = None
+    ) -> "Estimate":
+        """The same with the capture that it is of, and what is known of that."""
+        return replace(self, capture=capture, notes=self.notes if notes is None else notes)
+
+    def by_model(self, model: Model) -> "Estimate":
+        """The same maps, whose colours another model tells."""
+        return replace(self, by=MadeBy.of(model))
+
+    def changed_by(self, change: Change) -> "EditedEstimate":
+        """An edited estimate."""
+        return EditedEstimate(self, (change,))
+
+
+def skin_of(
+    maps: Mapping[str, ArrayLike],
+    mask: ArrayLike | None = None,
+    *,
+    model: Model | str = DEFAULT,
+    calibration: Calibration | None = None,
+    source: ArrayLike | None = None,
+    sigmas: Mapping[str, ArrayLike] | None = None,
+    confidence: ArrayLike | None = None,
+    provenance: Mapping[str, str] | None = None,
+) -> Estimate:
+    """Skin maps of arrays (H, W) by name, in their units, as an estimate would have them.
+
+    `mask` is 1 everywhere unless given. The others are those of `SkinMaps`; `source` is the capture
+    (H, W, 3), linear sRGB. Raises CutisError for arrays of different sizes and missing maps.
+    """
+    arrays = {name: np.asarray(values, dtype=np.float32) for name, values in maps.items()}
+    shape = np.shape(next(iter(arrays.values()), np.zeros(())))
+    cover = np.ones(shape, np.float32) if mask is None else np.asarray(mask, dtype=np.float32)
+    spread = {name: np.asarray(v, dtype=np.float32) for name, v in (sigmas or {}).items()}
+    return Estimate(
+        Maps(arrays, cover), MadeBy.of(load_model(model)), calibration or Calibration(), spread,
+        None if confidence is None else np.asarray(confidence, dtype=np.float32),
+        None if source is None else np.asarray(source, dtype=np.float32),
+        provenance or {},
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class EditedEstimate(SkinMaps):
+    """An estimate with changes, which are worked out when their maps are asked for.
+
+    `before` is the estimate; `changes` are applied in order to `base`, maps that are edited already
+    (as files hold them, with `told` and `counted` of what was done to them), or to the estimate's.
+    """
+
+    before: Estimate
+    changes: tuple[Change, ...] = ()
+    base: Tile | None = None
+    told: tuple[str, ...] = ()
+
+    @cached_property
+    def _tile(self) -> Tile:
+        return self._worked_out(slice(0, self.before.shape[0]))
+
+    def _worked_out(self, rows: slice) -> Tile:
+        """The tile of some rows; changes that look further see so much more."""
+        height = self.before.shape[0]
+        start, stop, _ = rows.indices(height)
+        reach = sum(change.reach for change in self.changes)
+        wide = slice(max(0, start - reach), min(height, stop + reach))
+        tile = _part(self._start, wide)
+        for change in self.changes:
+            tile = change.rows(wide)(tile)
+        return _part(tile, slice(start - wide.start, stop - wide.start))
+
+    @property
+    def _start(self) -> Tile:
+        if self.base is not None:
+            return self.base
+        return Tile(self.before.maps, self.before.sigmas)
+
+    @property
+    def maps(self) -> Maps:
+        """The edited maps."""
+        return self._tile.maps
+
+    @property
+    def sigmas(self) -> Mapping[str, Map]:
+        """Standard deviations by name, carried through the edits."""
+        return self._tile.sigmas
+
+    @property
+    def estimate(self) -> Estimate:
+        """The estimate without edits."""
+        return self.before
+
+    @property
+    def mask(self) -> Map:
+        """That of the estimate: edits do not move it."""
+        return self.before.mask
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Height and width in texels."""
+        return self.before.shape
+
+    @property
+    def edits(self) -> tuple[str, ...]:
+        """What was done to the estimate, a line each."""
+        return (*self.told, *(line for change in self.changes for line in change.told))
+
+    @property
+    def clamped(self) -> tuple[int, ...]:
+        """Of each of `edits`, how many texels it pushed against the end of a range."""
+        return self._tile.clamped
+
+    def rows(self, rows: slice) -> "EditedEstimate":
+        """The edited estimate of some rows, worked out; its counts are those of the rows."""
+        done = "_tile" in self.__dict__
+        tile = _part(self._tile, rows) if done else self._worked_out(rows)
+        return EditedEstimate(self.before.rows(rows), (), tile, self.edits)
+
+    def changed_by(self, change: Change) -> "EditedEstimate":
+        """The same with one more change."""
+        return replace(self, changes=(*self.changes, change))
+
+    def with_capture(
+        self, capture: Map | None, notes: Mapping[str, str] | None = None
+    ) -> "EditedEstimate":
+        """The same with the capture that it is of, and what is known of that."""
+        return replace(self, before=self.before.with_capture(capture, notes))
+
+    def by_model(self, model: Model) -> "EditedEstimate":
+        """The same maps, whose colours another model tells."""
+        return replace(self, before=self.before.by_model(model))
+
+
+class Recolouring:
+    """From rows of a capture to the same with the edits of rows of maps in them.
+
+    Called with some rows of maps and the colours (h, W, 3) of their capture it gives which texels
+    change (h, W), and all colours (h, W, 3): texels that no edit changed are verbatim.
+    """
+
+    def __init__(
+        self, model: Model, calibration: Calibration, illuminant: LightLike | None = None
+    ) -> None:
+        self._model, self._calibration = model, calibration
+        self._relight = colours.relighting(model, calibration, illuminant)
+
+    def __call__(self, skin: SkinMaps, source: Map) -> tuple[Any, Map]:
+        """Changed texels, and colours."""
+        before, after = skin.estimate.maps, skin.maps
+        if self._relight is not None:
+            return np.ones(skin.shape, dtype=bool), self._relight(before, after, source)
+        return colours.changes(self._model, self._calibration, before, after, source)
+
+
+def _part(tile: Tile, rows: slice) -> Tile:
+    sigmas = {name: values[rows] for name, values in tile.sigmas.items()}
+    return Tile(tile.maps.rows(rows), sigmas, tile.clamped)
+
+
+def _edit(name: str, operation: str, amount: ArrayLike) -> Edit:
+    if np.ndim(amount) == 0:
+        return Edit(name, operation, float(np.asarray(amount)))
+    return Edit(name, operation, np.asarray(amount, dtype=np.float32))

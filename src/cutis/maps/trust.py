@@ -11,8 +11,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from cutis.errors import CutisError
-from cutis.inverse.models import load_model
+from cutis.inverse.model import Model
 from cutis.maps.statistics import BINS, quantile
 from cutis.optics import NAMES, PARAMETERS, Parameter, axes
 
@@ -32,12 +31,9 @@ def stored_sigma(values: NDArray[np.float32], known: Parameter) -> NDArray[np.fl
     return np.clip(np.nan_to_num(values, nan=float(width)), np.float32(0), width)
 
 
-def prior_sigma(model: str) -> tuple[float, ...]:
+def prior_sigma(model: Model | None) -> tuple[float, ...]:
     """Standard deviations of the five network coordinates before a colour was seen."""
-    try:
-        known = load_model(model).prior_sigma
-    except CutisError:  # a file of weights that is gone
-        known = None
+    known = None if model is None else model.prior_sigma
     return (EVEN,) * len(NAMES) if known is None else known
 
 
@@ -76,11 +72,12 @@ class TrustStatistics:
         """Share of the texels whose colour is rather not one of skin; None without σ."""
         return self._unsure / self._inside if self._inside else None
 
-    def finish(self, model: str) -> dict[str, dict[str, float]]:
+    def finish(self, model: Model | None) -> dict[str, dict[str, float]]:
         """For each map with σ its median in the map's unit and how far the map is `informed`.
 
         `sure_median` is that of the map itself over the same texels, which σ is a share of: hair
-        inside a mask has no part in either. Empty where no texel is confident.
+        inside a mask has no part in either. Empty where no texel is confident. `model` is None
+        where it is not here any more.
         """
         if self._inside == self._unsure:
             return {}

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutis.colour import LINEAR
-from cutis.maps import Edit
+from cutis.maps import Change
 from cutis.render.skin import Rows, Skin
-from cutis.textures import Texture, bands, texture_writer
+from cutis.textures import Frame, Texture, bands, texture_writer
 
 LONGEST = 4096
 """Texels along the longer side; a 16k texture as Blender holds it would take 4 GB."""
@@ -22,6 +22,11 @@ class _Reduced:
 
     shape: tuple[int, int]
 
+    @property
+    def frame(self) -> Frame:
+        """All of its picture."""
+        return Frame(self.shape, self.shape)
+
     def rows(self, rows: slice) -> Texture:
         count = len(range(*rows.indices(self.shape[0])))
         return _texture(np.zeros((count, self.shape[1], 3), np.float32))
@@ -31,8 +36,7 @@ def write_feed(
     skin: Skin,
     path: Path,
     convert: Callable[[Rows], NDArray[np.floating]],
-    edits: Sequence[Edit] = (),
-    amount: float = 1.0,
+    changes: Sequence[Change] = (),
     longest: int = LONGEST,
 ) -> None:
     """Writes what `convert` makes of the skin's rows, (h, W, 3), as an EXR for a renderer.
@@ -44,7 +48,7 @@ def write_feed(
     like = _Reduced((max(height // step, 1), max(width // step, 1)))
     with texture_writer(path, like) as writer:
         for rows in bands(skin.shape, step):
-            colours = np.asarray(convert(skin.rows(rows, edits, amount)), np.float32)
+            colours = np.asarray(convert(skin.rows(rows, changes)), np.float32)
             writer.write(_texture(_means(colours, step)))
 
 

@@ -7,7 +7,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from cutis.errors import CutisError
-from cutis.maps import Edit
+from cutis.maps import Change
 from cutis.render.blender import Blender
 from cutis.render.blender_material import write_blender
 from cutis.render.heads import credits_of
@@ -37,8 +37,7 @@ def export_material(
     gloss: Gloss | None = None,
     normal: Path | None = None,
     roughness: Path | None = None,
-    edits: Sequence[Edit] = (),
-    amount: float = 1.0,
+    changes: Sequence[Change] = (),
     blender: Blender | None = None,
     progress: Progress | None = None,
 ) -> Exported:
@@ -52,7 +51,7 @@ def export_material(
     CutisError as the writers do.
     """
     textures = write_textures(
-        skin, folder, name, radius, anisotropy, edits, amount, blender is not None, progress
+        skin, folder, name, radius, anisotropy, changes, blender is not None, progress
     )
     normal_name = _copied(normal, folder, f"{name}.normal")
     roughness_name = _copied(roughness, folder, f"{name}.roughness")
@@ -73,8 +72,8 @@ def export_material(
             "boundary": "index-matched: the albedo is that of light that has entered",
             "made_by": f"cutis {version('cutis')}",
             "source": skin.path.name,
-            **({} if skin.maps is None else {"model": skin.maps.model}),
-            "edits": [*_earlier(skin), *(f"{edit}" + _share(amount) for edit in edits)],
+            **({} if skin.maps is None else {"model": skin.maps.made_by.name}),
+            "edits": [*_earlier(skin), *(line for change in changes for line in change.told)],
         },
         credits=credits_of(*skin.origins()),
     )
@@ -102,8 +101,4 @@ def _copied(file: Path | None, folder: Path, stem: str) -> str | None:
 
 
 def _earlier(skin: Skin) -> tuple[str, ...]:
-    return () if skin.maps is None else skin.maps.edits
-
-
-def _share(amount: float) -> str:
-    return f", amount {amount:g}" if amount < 1 else ""
+    return () if skin.maps is None else skin.maps.header.edits

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from cutis.colour import LINEAR
 from cutis.errors import CutisError
-from cutis.maps import Edit, SkinMaps
+from cutis.maps import Change, SkinMaps
 from cutis.render import cycles
 from cutis.render.inversion import single_scattering_albedo
 from cutis.render.material import Triple
@@ -45,8 +45,7 @@ def write_textures(
     name: str,
     radius: Radius,
     anisotropy: float,
-    edits: Sequence[Edit] = (),
-    amount: float = 1.0,
+    changes: Sequence[Change] = (),
     for_cycles: bool = False,
     progress: Progress | None = None,
 ) -> Textures:
@@ -64,7 +63,7 @@ def write_textures(
             f"{skin.path.name} is a texture; a mean free path that follows the skin needs its maps "
             "(NAME.skin.exr), which cutis estimate makes"
         )
-    mean = _mean(skin, radius, edits, amount) if callable(radius) else radius
+    mean = _mean(skin, radius, changes) if callable(radius) else radius
     makers = _makers(radius, mean, anisotropy, for_cycles)
     total = skin.shape[0] * skin.shape[1]
     with contextlib.ExitStack() as stack:
@@ -75,7 +74,7 @@ def write_textures(
             for kind in makers
         }
         for rows in skin.bands():
-            part = skin.rows(rows, edits, amount)
+            part = skin.rows(rows, changes)
             for kind, make in makers.items():
                 writers[kind](_channels(make(part)))
             if progress is not None:
@@ -144,13 +143,12 @@ def _channels(rows: NDArray[np.generic]) -> dict[str, NDArray[np.generic]]:
 def _mean(
     skin: Skin,
     radius: Callable[[SkinMaps], NDArray[np.floating]],
-    edits: Sequence[Edit],
-    amount: float,
+    changes: Sequence[Change],
 ) -> Triple:
     """The mean of radii where there is skin; CutisError where they are not positive."""
     sums, count = np.zeros(3), 0
     for rows in skin.bands():
-        maps = skin.rows(rows, edits, amount).maps
+        maps = skin.rows(rows, changes).maps
         assert maps is not None
         lengths = radius(maps)[maps.mask > 0]
         if not (np.isfinite(lengths).all() and (lengths > 0).all()):

@@ -7,17 +7,17 @@ model does not explain (beard, eyes, fine detail) rides along, as it does in edi
 
 import os
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cutis.colour import Space
 from cutis.errors import CutisError
-from cutis.inverse import tissue_of
-from cutis.maps import Edit, MapsFile, SkinMaps, find_source, open_source
+from cutis.maps import Change, MapsFile, SkinMaps, default_tissue, find_source, open_source
 from cutis.optics import Tissue
-from cutis.textures import MaskFile, TextureFile
+from cutis.textures import TextureFile
 from cutis.textures.closing import Closing
 
 MAPS = ".skin.exr"
@@ -37,7 +37,7 @@ class Skin(Closing):
 
     `path` is NAME.skin.exr, or an albedo texture, whose colours are taken as they are. `source` is
     the capture of maps, where it is not what their header names; `model_only` leaves it out.
-    `paint` (a mask file) says where edits apply. `shape` is (H, W). Close it, or use it in a with
+    `shape` is (H, W). Close it, or use it in a with
     block. Raises CutisError for files that cannot be read.
     """
 
@@ -47,24 +47,19 @@ class Skin(Closing):
         *,
         source: Path | None = None,
         model_only: bool = False,
-        paint: Path | None = None,
-        colorspace: str = "auto",
-        ocio: str | None = None,
+        colorspace: str | Space = "auto",
     ) -> None:
         self.path = Path(path)
         self.maps: MapsFile | None = None
         self.capture: TextureFile | None = None
-        self._paint: MaskFile | None = None
         try:
             if self.path.name.endswith(MAPS):
                 self.maps = MapsFile(self.path)
                 self.shape = self.maps.shape
                 if not model_only:
                     self._find_capture(source)
-                if paint is not None:
-                    self._paint = MaskFile(paint, self.shape)
             else:
-                self.capture = TextureFile(self.path, colorspace, ocio)
+                self.capture = TextureFile(self.path, colorspace)
                 self.shape = self.capture.shape
         except BaseException:
             self.close()
@@ -83,7 +78,7 @@ class Skin(Closing):
     @property
     def tissue(self) -> Tissue:
         """The tissue of the maps' model; of a texture, that of the default model."""
-        return tissue_of("default" if self.maps is None else self.maps.model)
+        return default_tissue() if self.maps is None else self.maps.made_by.load().tissue
 
     @property
     def stem(self) -> str:
@@ -101,7 +96,7 @@ class Skin(Closing):
 
     def close(self) -> None:
         """Lets go of the files."""
-        for file in (self.maps, self.capture, self._paint):
+        for file in (self.maps, self.capture):
             if file is not None:
                 file.close()
 
@@ -111,22 +106,19 @@ class Skin(Closing):
         assert opened is not None
         return opened.bands()
 
-    def rows(self, rows: slice, edits: Sequence[Edit] = (), amount: float = 1.0) -> Rows:
-        """Some rows, edited; CutisError for edits of a texture, which has no maps."""
+    def rows(self, rows: slice, changes: Sequence[Change] = ()) -> Rows:
+        """Some rows, changed; CutisError for edits of a texture, which has no maps."""
         if self.maps is None:
-            if edits:
+            if changes:
                 raise CutisError(
                     f"{self.path.name} is a texture; edits need its maps (NAME{MAPS}), which "
                     "cutis estimate makes"
                 )
             assert self.capture is not None
             return Rows(_clipped(self.capture.rows(rows).linear()), None)
-        skin = self.maps.rows(rows, trust=False)
+        skin = self.maps.edited(rows, changes, trust=False)
         if self.capture is not None:
-            skin = replace(skin, source=self.capture.rows(rows).linear())
-        if edits:
-            where = None if self._paint is None else self._paint.rows(rows)
-            skin = skin.apply(list(edits), where, amount=amount)
+            skin = skin.with_capture(self.capture.rows(rows).linear())
         return Rows(_clipped(skin.calibration.apply(skin.albedo())), skin)
 
 

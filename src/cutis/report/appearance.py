@@ -1,5 +1,8 @@
 """How colours and maps look to people: on screen, in previews, on pages."""
 
+from functools import lru_cache
+from importlib import resources
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,7 +15,26 @@ COLOUR_MAPS = {
     "eumelanin": "cividis",
     "oxygenation": "coolwarm",
 }
-"""The matplotlib colour map of each map."""
+"""The colour map of each map, by the name that matplotlib gives it too."""
+ERRORS, SURE = "magma", "viridis"
+"""Those of colour differences and of confidence."""
+
+
+@lru_cache
+def colour_map(name: str, levels: int = 256) -> NDArray[np.uint8]:
+    """(levels, 3) encoded sRGB of a colour map from low to high, of at most 256 colours.
+
+    The tables are `data/page/colour_maps.csv`; `python -m studies.build_appearance` writes them.
+    """
+    file = resources.files("cutis.data").joinpath("page", "colour_maps.csv")
+    heads, *rows = [
+        line.split(",") for line in file.read_text("utf-8").splitlines() if line[0] != "#"
+    ]
+    columns = [heads.index(f"{name} {channel}") for channel in ("red", "green", "blue")]
+    table = np.array([[int(row[c]) for c in columns] for row in rows], dtype=np.uint8)
+    table = table[np.rint(np.linspace(0, 255, levels)).astype(int)]
+    table.flags.writeable = False
+    return table
 
 
 def displayed(rgb: NDArray[np.floating]) -> NDArray[np.floating]:

@@ -1,164 +1,156 @@
-"""What an estimate can be trusted for, in numbers, gathered some rows at a time."""
+"""What a face is told, as a value: report.json, the printed summary and the page are made of it."""
 
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, is_dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from cutis.colour.difference import LIGHTEST_HAIR, PALEST, to_relative_xyz
 from cutis.errors import CutisError
-from cutis.maps.skin_maps import SkinMaps
-from cutis.maps.statistics import Histogram, MapStatistics
-from cutis.maps.trust import TrustStatistics
-from cutis.optics import NAMES, parameter
-from cutis.textures.texture import bands
-
-GAMUT_DELTA_E = 1.0
-"""CIEDE2000 beyond which the model does not explain a texel: it is out of gamut."""
 
 
-class Report:
-    """The numbers of a report in the making: `add` the rows of an estimate from top to bottom."""
+@dataclass(frozen=True)
+class Bars:
+    """A histogram: `edges` (n + 1) in the unit of a map, rising, `counts` (n) of texels between."""
 
-    def __init__(self, like: SkinMaps, shape: tuple[int, int]) -> None:
-        """Of an estimate with the model and calibration of `like`, (H, W) texels in all."""
-        self._like, self._shape = like, shape
-        self._maps, self._trust = MapStatistics(), TrustStatistics()
-        self._errors = Histogram(0.0, 100.0)
-        self._angles = Histogram(-180.0, 180.0)
-        self._squares, self._masked, self._below, self._above, self._beyond = 0.0, 0, 0, 0, 0
-        self._smoothness = Smoothness()
-
-    def add(self, skin: SkinMaps) -> None:
-        """The next rows, with their capture."""
-        for rows in bands(skin.shape):
-            self._add(skin.rows(rows))
-
-    def _add(self, skin: SkinMaps) -> None:
-        if skin.source is None:
-            raise CutisError("a report needs the capture; read it and estimate again")
-        inside = skin.mask > 0
-        source = skin.source[inside]
-        self._masked += len(source)
-        self._below += int(np.count_nonzero((source < 0).any(axis=1)))
-        self._above += int(np.count_nonzero((source > 1).any(axis=1)))
-        truth = skin.calibration.apply(source)
-        model = skin.calibration.apply(skin.model_albedo[inside])
-        errors, angles, texels = judged(truth, model)
-        self._squares += float(np.sum((model[texels] - truth[texels]) ** 2, dtype=np.float64))
-        self._errors.add(errors[texels])
-        self._beyond += int(np.count_nonzero(errors[texels] > GAMUT_DELTA_E))
-        self._angles.add(angles[texels])
-        where = np.zeros(skin.shape, dtype=bool)
-        where[inside] = texels
-        u = skin.coordinates()
-        self._maps.add(u, inside)
-        self._trust.add(skin.sigmas, skin.confidence, u, inside)
-        self._smoothness.add(u, skin.source, where)
-
-    def finish(self) -> dict[str, Any]:
-        """The numbers; see `report`."""
-        like, statistics = self._like, self._maps
-        percentiles, histograms = statistics.percentiles(), statistics.histograms()
-        trust, unsure = self._trust.finish(like.model), self._trust.low_confidence()
-        result: dict[str, Any] = {
-            "model": like.model,
-            "size": list(self._shape),
-            "masked_texels": self._masked,
-            "skin_texels": self._errors.count,
-            "below_0": self._below,
-            "above_1": self._above,
-            "calibration": {
-                "gains": [round(g, 5) for g in like.calibration.gains],
-                "origin": like.calibration.origin,
-                "illuminant": like.calibration.light,
-            },
-            "maps": {
-                name: {
-                    "unit": parameter(name).unit,
-                    **dict(zip(("p5", "median", "p95"), percentiles[name], strict=True)),
-                    **trust.get(name, {}),
-                    "histogram": histograms[name],
-                }
-                for name in NAMES
-            },
-            "clamped": statistics.clamped(),
-        }
-        if unsure is not None:
-            result["low_confidence"] = unsure
-        count = self._errors.count
-        if count:
-            result["colour"] = {
-                "mse": self._squares / (3 * count),
-                "delta_e_mean": self._errors.mean(),
-                "delta_e_p95": self._errors.percentile(0.95),
-                "out_of_gamut": self._beyond / count,
-                "ita_median": self._angles.percentile(0.5),
-            }
-            result["smoothness"] = self._smoothness.finish()
-        return result
+    edges: tuple[float, ...]
+    counts: tuple[int, ...]
 
 
-def report(skin: SkinMaps) -> dict[str, Any]:
-    """Every number that `cutis estimate` prints; needs the capture.
+@dataclass(frozen=True)
+class Percentiles:
+    """Values of a map below which 5, 50 and 95 % of the texels lie, in its unit."""
 
-    Colour errors compare the model alone with the calibrated capture, on skin texels: inside the
-    mask, L* > 35 and C*ab > 12; without any, `colour` and `smoothness` are left out. `smoothness`
-    is the mean difference of neighbouring texels of a map, in network coordinates, over that of
-    the capture (mean over R, G, B). `below_0` and `above_1` count texels inside the mask with a
-    colour that is no albedo. Percentiles are read from histograms of 65 536 bins and more;
-    `clamped` is the share of texels at an end of a map's range, `histogram` 64 bars for people.
-    Where the model knows σ, `low_confidence` is the share of the mask with a confidence below 0.5,
-    and over the rest maps have `sigma` and `sure_median`, the medians of σ and of the map, and
-    `informed`: 1 − σ / σ of the prior in network coordinates, 1 where all is known and 0 where the
-    colour said nothing.
+    p5: float
+    median: float
+    p95: float
+
+
+@dataclass(frozen=True)
+class MapNumbers:
+    """One map inside the mask, and where the model has σ, how far it is known.
+
+    `sigma` and `sure_median` are medians of σ and of the map over texels of a colour that is likely
+    skin's; `informed` is 1 − σ / σ of the prior, from 0 (the colour said nothing) to 1.
     """
-    running = Report(skin, skin.shape)
-    running.add(skin)
-    return running.finish()
+
+    unit: str
+    p5: float
+    median: float
+    p95: float
+    sure_median: float | None = None
+    sigma: float | None = None
+    informed: float | None = None
+    histogram: Bars | None = None
 
 
-def judged(
-    truth: NDArray[np.float32], model: NDArray[np.float32]
-) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_]]:
-    """CIEDE2000 and ITA (n,) of colours (n, 3), where the third says that they are skin's."""
-    from cutis.kernels.statistics_kernel import judge
+@dataclass(frozen=True)
+class ColourNumbers:
+    """The model alone against the calibrated capture, on skin texels.
 
-    errors, angles = np.zeros(len(truth), np.float32), np.zeros(len(truth), np.float32)
-    skin = np.zeros(len(truth), np.bool_)
-    least = LIGHTEST_HAIR, PALEST
-    judge(len(truth), truth, model, to_relative_xyz(), least, errors, angles, skin)
-    return errors, angles, skin
+    `mse` in linear sRGB, errors in CIEDE2000, `out_of_gamut` the share of texels with more than 1,
+    `ita_median` in degrees.
+    """
+
+    mse: float
+    delta_e_mean: float
+    delta_e_p95: float
+    out_of_gamut: float
+    ita_median: float
 
 
-class Smoothness:
-    """Mean neighbour difference of each map over that of the capture, over chosen texels."""
+@dataclass(frozen=True)
+class CalibrationNumbers:
+    """Gains of red, green and blue, where they come from, and the light of the capture."""
 
-    def __init__(self) -> None:
-        self._maps, self._colour = np.zeros(5), np.zeros(3)
-        self._last: tuple[NDArray[np.bool_], NDArray[np.floating], NDArray[np.floating]] | None
-        self._last = None
+    gains: tuple[float, ...] = (1.0, 1.0, 1.0)
+    origin: str = "none"
+    illuminant: str = "D65"
 
-    def add(
-        self, u: NDArray[np.float32], source: NDArray[np.float32], where: NDArray[np.bool_]
-    ) -> None:
-        """The next rows: coordinates (h, W, 5), capture (h, W, 3), texels (h, W) that count."""
-        from cutis.kernels.statistics_kernel import differences
 
-        for values, total in ((u, self._maps), (source, self._colour)):
-            sums = np.empty((len(values), values.shape[2]))
-            differences(len(sums), np.ascontiguousarray(values), where, sums)
-            total += sums.sum(axis=0)
-        if self._last is not None:  # from the last row of what came before to the first of this
-            both = self._last[0] & where[0]
-            self._maps += np.abs(u[0] - self._last[1])[both].sum(axis=0, dtype=np.float64)
-            self._colour += np.abs(source[0] - self._last[2])[both].sum(axis=0, dtype=np.float64)
-        self._last = where[-1].copy(), u[-1].copy(), source[-1].copy()
+@dataclass(frozen=True)
+class RegionNumbers:
+    """The texels of one colour of a region picture, by the name of that colour."""
 
-    def finish(self) -> dict[str, float]:
-        """The ratio for each map; 0 where the capture is flat."""
-        base = float(self._colour.mean())
-        return {
-            name: float(m / base) if base else 0.0
-            for name, m in zip(NAMES, self._maps, strict=True)
-        }
+    name: str
+    texels: int
+    ita_median: float
+    delta_e_mean: float
+    maps: Mapping[str, Percentiles]
+
+
+@dataclass(frozen=True)
+class Report:
+    """The numbers of one estimate; see `cutis.report.report` for what they mean.
+
+    What is not known is None or empty: `colour` and `smoothness` without a skin texel, regions
+    without a picture of them, `low_confidence` and what maps say of σ where the model has none.
+    """
+
+    model: str = ""
+    size: tuple[int, ...] = (0, 0)
+    masked_texels: int = 0
+    skin_texels: int = 0
+    below_0: int = 0
+    above_1: int = 0
+    calibration: CalibrationNumbers = CalibrationNumbers()
+    maps: Mapping[str, MapNumbers] = field(default_factory=dict)
+    clamped: Mapping[str, float] = field(default_factory=dict)
+    low_confidence: float | None = None
+    colour: ColourNumbers | None = None
+    smoothness: Mapping[str, float] = field(default_factory=dict)
+    colorspace: str | None = None
+    regions: tuple[RegionNumbers, ...] = ()
+
+    @property
+    def skin_share(self) -> float:
+        """Share of the mask that has the colour of skin; 1 for an empty mask."""
+        return self.skin_texels / self.masked_texels if self.masked_texels else 1.0
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data, as report.json holds it; what is not known is left out."""
+        return dict(_plain(self))
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> "Report":
+        """The inverse of `as_dict`. Raises CutisError for data that is no report."""
+        try:
+            known = dict(data)
+            if "calibration" in known:
+                known["calibration"] = _made(CalibrationNumbers, known["calibration"])
+            if "colour" in known:
+                known["colour"] = _made(ColourNumbers, known["colour"])
+            if "maps" in known:
+                known["maps"] = {name: _map(row) for name, row in known["maps"].items()}
+            known["regions"] = tuple(_region(one) for one in known.get("regions", ()))
+            found = _made(cls, known)
+        except (TypeError, KeyError, AttributeError, ValueError) as error:
+            raise CutisError(f"this is no report of an estimate ({error})") from None
+        assert isinstance(found, cls)
+        return found
+
+
+def _map(row: Mapping[str, Any]) -> MapNumbers:
+    bars = row.get("histogram")
+    found = _made(MapNumbers, {**row, "histogram": None if bars is None else _made(Bars, bars)})
+    assert isinstance(found, MapNumbers)
+    return found
+
+
+def _region(one: Mapping[str, Any]) -> RegionNumbers:
+    maps = {name: Percentiles(**row) for name, row in one["maps"].items()}
+    return RegionNumbers(**{**one, "maps": maps})
+
+
+def _made(kind: type, row: Mapping[str, Any]) -> Any:
+    values = {key: tuple(v) if isinstance(v, list) else v for key, v in row.items()}
+    return kind(**values)
+
+
+def _plain(value: Any) -> Any:
+    if is_dataclass(value):
+        pairs = ((f.name, getattr(value, f.name)) for f in fields(value))
+        return {name: _plain(part) for name, part in pairs if part not in (None, (), {})}
+    if isinstance(value, Mapping):
+        return {name: _plain(part) for name, part in value.items()}
+    if isinstance(value, tuple):
+        return [_plain(part) for part in value]
+    return value

@@ -3,22 +3,32 @@
 Previews are for the eye; the numbers are in the EXR.
 """
 
-from collections.abc import Mapping, Sequence
+import contextlib
+from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cutis.colour import delta_e
+from cutis.errors import CutisError
 from cutis.inverse import Calibration
-from cutis.maps import SkinMaps
+from cutis.maps import MapsFile, SkinMaps, find_source, open_source
 from cutis.maps.trust import CONFIDENCE, LOW, SIGMA
 from cutis.optics import PARAMETERS, Parameter
-from cutis.report.appearance import COLOUR_MAPS
+from cutis.report.appearance import COLOUR_MAPS, ERRORS, SURE
+from cutis.report.drawing import Panel, drawn, in_a_row
+from cutis.report.scale import Scale
 from cutis.textures import replacing
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
 
 LONGEST = 900
 """Texels of the longer side of a preview."""
+CELL = 450
+"""Texels of the longer side of one map of several in a row."""
 
 
 def reduced(values: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -42,7 +52,7 @@ class Previews:
 
     def add(self, skin: SkinMaps) -> None:
         """The next rows."""
-        rows = slice(-skin.first_row % self._step, None, self._step)
+        rows = slice(-skin.maps.whole.first_row % self._step, None, self._step)
         for name, values in self._seen(skin).items():
             self._parts.setdefault(name, []).append(values[rows, :: self._step].copy())
 
@@ -73,93 +83,76 @@ class Previews:
             self._whole = whole
         return self._whole
 
-    def write(self, stem: Path) -> None:
+    def write(self, stem: Path) -> list[Path]:
         """Writes `stem`.<map>.png for the five maps and, with the capture, `stem`.error.png.
 
         Where the model knows them, `stem`.sigma.png shows σ of all maps side by side, and
-        `stem`.confidence.png how likely each colour is one of skin.
+        `stem`.confidence.png how likely each colour is one of skin. Returns what it wrote.
         """
-        pictures = self.pictures()
+        pictures, drawings = self.pictures(), {}
         for known in PARAMETERS:
             values = pictures[known.name]
             low, high = known.low, known.high
             if np.isfinite(values).any():
                 low, high = (float(v) for v in np.nanpercentile(values, [1, 99]))
-            unit = "" if known.unit == "1" else f" [{known.unit}]"
-            label, colours = f"{known.meaning}{unit}", COLOUR_MAPS[known.name]
-            path = Path(f"{stem}.{known.name}.png")
-            _figure(path, values, label, colours, (low, high), known.root)
+            scale = Scale(low, max(high, low + 1e-9), known.root)
+            panel = Panel(values, COLOUR_MAPS[known.name], scale, titled(known.meaning, known))
+            drawings[known.name] = drawn(panel)
         if "error" in pictures:
-            label = "model against capture [ΔE00]"
-            _figure(Path(f"{stem}.error.png"), pictures["error"], label, "magma", (0.0, 2.0))
+            title = "model against capture [ΔE00]"
+            panel = Panel(pictures["error"], ERRORS, Scale(0.0, 2.0), title)
+            drawings["error"] = drawn(panel)
         if CONFIDENCE in pictures:
-            label, values = "confidence that the colour is one of skin", pictures[CONFIDENCE]
-            _figure(Path(f"{stem}.confidence.png"), values, label, "viridis", (0.0, 1.0))
+            title = "confidence that the colour is one of skin"
+            panel = Panel(pictures[CONFIDENCE], SURE, Scale(0.0, 1.0), title)
+            drawings["confidence"] = drawn(panel)
         sigmas = [known for known in PARAMETERS if known.name + SIGMA in pictures]
         if sigmas:
-            _sheet(Path(f"{stem}.sigma.png"), sigmas, pictures)
+            drawings["sigma"] = in_a_row([_spread(known, pictures) for known in sigmas])
+        return [_saved(one, Path(f"{stem}.{name}.png")) for name, one in drawings.items()]
 
 
-def _sheet(
-    path: Path, sigmas: Sequence[Parameter], pictures: Mapping[str, NDArray[np.float32]]
-) -> None:
-    """σ of the maps in a row, each with its scale below, from 0 to what 95 % stay below.
+def previews_of(maps: Path) -> dict[str, NDArray[np.float32]]:
+    """Reduced pictures of a file of maps, with its capture where that is at hand."""
+    with contextlib.ExitStack() as stack:
+        file = stack.enter_context(MapsFile(maps))
+        capture = None
+        with contextlib.suppress(CutisError):
+            source = find_source(file.provenance, maps)
+            capture = stack.enter_context(open_source(file.provenance, source))
+        previews = Previews(file.header.calibration, file.shape)
+        for rows in file.bands():
+            skin = file.rows(rows)
+            if capture is not None:
+                skin = skin.with_capture(capture.rows(rows).linear())
+            previews.add(skin)
+    return previews.pictures()
+
+
+def titled(text: str, known: Parameter) -> str:
+    """A title with the unit of a map."""
+    return text if known.unit == "1" else f"{text} [{known.unit}]"
+
+
+def _spread(known: Parameter, pictures: Mapping[str, NDArray[np.float32]]) -> Panel:
+    """σ of a map from 0 to what 95 % stay below.
 
     Of texels that are likely skin, where there are some: what little is known of hair and edges
     would leave skin blank.
     """
-    from matplotlib.figure import Figure
-
-    height, width = pictures[sigmas[0].name + SIGMA].shape
-    cell = min(4.0, 4.0 * width / height)
-    figure = Figure(figsize=(len(sigmas) * cell, cell * height / width + 0.9), dpi=100)
-    rows = figure.subplots(1, len(sigmas), squeeze=False)[0]
-    confidence = pictures.get(CONFIDENCE)
+    values, confidence = pictures[known.name + SIGMA], pictures.get(CONFIDENCE)
     sure = np.bool_(True) if confidence is None else confidence >= LOW
     sure = sure if np.any(sure) else np.bool_(True)
-    for axes, known in zip(rows, sigmas, strict=True):
-        values = pictures[known.name + SIGMA]
-        seen = values[np.isfinite(values) & sure]
-        high = float(np.percentile(seen, 95)) if seen.size else 1.0
-        step = max(1, values.shape[1] // 400)
-        shown = axes.imshow(
-            values[::step, ::step], cmap=COLOUR_MAPS[known.name], vmin=0, vmax=max(high, 1e-9),
-            interpolation="nearest",
-        )  # fmt: skip
-        axes.set_axis_off()
-        unit = "" if known.unit == "1" else f" [{known.unit}]"
-        figure.colorbar(
-            shown, ax=axes, orientation="horizontal", label=f"σ of {known.name}{unit}", pad=0.03
-        )
+    seen = values[np.isfinite(values) & sure]
+    high = float(np.percentile(seen, 95)) if seen.size else 1.0
+    step = -(-max(values.shape) // CELL)
+    return Panel(
+        values[::step, ::step], COLOUR_MAPS[known.name], Scale(0.0, max(high, 1e-9)),
+        titled(f"σ of {known.name}", known),
+    )  # fmt: skip
+
+
+def _saved(picture: "Image", path: Path) -> Path:
     with replacing(path) as partial:
-        figure.savefig(partial, facecolor="white", bbox_inches="tight")
-
-
-def _figure(
-    path: Path,
-    values: NDArray[np.float32],
-    label: str,
-    colour_map: str,
-    limits: tuple[float, float],
-    root: int = 1,
-) -> None:
-    """A colour-mapped picture with its scale bar, even in the `root`-th root of the values."""
-    from matplotlib.colors import PowerNorm
-    from matplotlib.figure import Figure
-
-    height, width = values.shape
-    low, high = limits
-    figure = Figure(figsize=(width / 100 + 1.3, height / 100), dpi=100)
-    axes = figure.add_axes((0, 0, width / (width + 130), 1))
-    axes.set_axis_off()
-    axes.set_facecolor("0.5")
-    shown = axes.imshow(
-        values,
-        cmap=colour_map,
-        norm=PowerNorm(1 / root, low, max(high, low + 1e-9)),
-        interpolation="nearest",
-    )
-    bar = figure.add_axes(((width + 20) / (width + 130), 0.08, 22 / (width + 130), 0.84))
-    figure.colorbar(shown, cax=bar, label=label)
-    with replacing(path) as partial:
-        figure.savefig(partial, facecolor="white")
+        picture.save(partial, "PNG")
+    return path

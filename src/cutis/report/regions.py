@@ -2,7 +2,6 @@
 
 import os
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +10,7 @@ from cutis.colour import delta_e, ita
 from cutis.errors import CutisError
 from cutis.maps.skin_maps import SkinMaps
 from cutis.maps.statistics import Histogram, MapStatistics
+from cutis.report.numbers import Percentiles, RegionNumbers
 from cutis.textures import TextureFile
 
 MOST = 32
@@ -58,21 +58,18 @@ class Regions:
             differences.add(errors[here])
             typology.add(angles[here])
 
-    def finish(self) -> list[dict[str, Any]]:
-        """For each region its colour as #rrggbb, texels, ITA°, ΔE00 of the model, and maps."""
-        return [
-            {
-                "name": f"#{label:06x}",
-                "texels": differences.count,
-                "ita_median": typology.percentile(0.5),
-                "delta_e_mean": differences.mean(),
-                "maps": {
-                    name: dict(zip(("p5", "median", "p95"), values, strict=True))
-                    for name, values in maps.percentiles().items()
-                },
-            }
+    def finish(self) -> tuple[RegionNumbers, ...]:
+        """The regions, named by their colour as #rrggbb."""
+        return tuple(
+            RegionNumbers(
+                name=f"#{label:06x}",
+                texels=differences.count,
+                ita_median=typology.percentile(0.5),
+                delta_e_mean=differences.mean(),
+                maps={name: Percentiles(*values) for name, values in maps.percentiles().items()},
+            )
             for label, (maps, differences, typology) in sorted(self._found.items())
-        ]
+        )
 
 
 def _labels(rgb: NDArray[np.float32]) -> NDArray[np.int32]:

@@ -6,7 +6,8 @@ colour says no more than was known of skins before.
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import Any
+
+from cutis.report.numbers import MapNumbers
 
 WELL, ROUGHLY = 0.7, 0.35
 """Informed by at least this much a map is well known, or roughly; below it is hardly known."""
@@ -20,21 +21,20 @@ FRACTIONS = ("melanin", "blood")
 UNSURE = 0.05
 """Share of texels with a low confidence that is worth a word."""
 
-Maps = Mapping[str, Mapping[str, Any]]
-"""By name what a report says of each map: `median`, `unit`, and if known `sigma`, `informed` and
-`sure_median`, all three over texels of a colour that is likely skin's."""
+Maps = Mapping[str, MapNumbers]
+"""What a report says of each map, by name."""
 
 
 def known(maps: Maps, name: str) -> tuple[str, str] | None:
-    """A level of `page_words.LEVELS` and words on how far a map is known; None without σ."""
-    informed = maps.get(name, {}).get("informed")
+    """A level of `words.LEVELS` and words on how far a map is known; None without σ."""
+    informed = maps[name].informed if name in maps else None
     if informed is None or not math.isfinite(informed):
         return None
     if informed >= WELL:
         return "good", "well known"
     if informed >= ROUGHLY:
         return "care", "roughly known"
-    if name in BELOW and _middle(maps.get("melanin", {})) >= DARK:
+    if name in BELOW and _middle(maps.get("melanin")) >= DARK:
         return "doubt", "hidden by melanin on this face"
     return "doubt", "hardly known"
 
@@ -42,16 +42,18 @@ def known(maps: Maps, name: str) -> tuple[str, str] | None:
 def spread(maps: Maps, name: str) -> str:
     """Median σ of a map as ± so much, relative for FRACTIONS: "±8 %", "±22 µm"."""
     row = maps[name]
-    sigma, unit, middle = row["sigma"], row["unit"], _middle(row)
+    sigma, unit, middle = row.sigma or 0.0, row.unit, _middle(row)
     if name in FRACTIONS and middle:
         share = 100 * sigma / middle
         return f"±{share:.0f} %" if share < 100 else "± more than its value"
     return f"±{sigma:.2g}" + ("" if unit == "1" else f" {unit}")
 
 
-def _middle(row: Mapping[str, Any]) -> float:
+def _middle(row: MapNumbers | None) -> float:
     """Median over the texels that σ is of; hair in a mask has no part in it."""
-    return float(row.get("sure_median", row.get("median", 0)) or 0)
+    if row is None:
+        return 0.0
+    return row.median if row.sure_median is None else row.sure_median
 
 
 def lines(maps: Maps, low_confidence: float | None) -> Iterator[str]:

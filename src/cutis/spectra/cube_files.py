@@ -12,10 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutis.spectra.envi import EnviCube
-from cutis.spectra.reflectance import load_array, read_wavelengths
 from cutis.spectra.spectral_cube import SpectralCube
+from cutis.spectra.stored import StoredArray, npy_header
+from cutis.spectra.wavelengths import read_wavelengths
 from cutis.textures.channels import ChannelFile
 from cutis.textures.problem import problem, shorten
+from cutis.textures.regular import open_regular
 
 LIGHT_SPEED = 299_792_458e9
 """nm/s."""
@@ -38,8 +40,7 @@ def open_cube(
     that are missing, damaged, or do not say their wavelengths.
     """
     path = Path(path)
-    if not path.is_file():
-        raise problem(path, "no such file; give a spectral .exr, a .npy or an ENVI .hdr")
+    open_regular(path).close()
     given = None if wavelengths is None else read_wavelengths(wavelengths)
     suffix = path.suffix.lower()
     if suffix == ".exr":
@@ -106,22 +107,25 @@ class NpyCube(SpectralCube):
         self, path: Path, given: tuple[NDArray[np.float64], list[str]] | None = None
     ) -> None:
         self.path = path
-        array = load_array(path)
+        dtype, shape, fortran, offset = npy_header(path)
         if given is None:
             given = self._beside()
         self.wavelengths, self.notes = given[0], list(given[1])
         count = len(self.wavelengths)
-        if array.ndim == 2 and array.shape[1] == count:
-            array = array[:, None]
-        if array.ndim == 3 and array.shape[2] != count and array.shape[0] == count:
+        if len(shape) == 2 and shape[1] == count:
+            shape = (shape[0], 1, count)
+        self._bands_first = len(shape) == 3 and shape[2] != count and shape[0] == count
+        if self._bands_first:
             self.notes.append("bands are along the first axis")
-            array = np.moveaxis(array, 0, 2)
-        if array.ndim != 3 or array.shape[2] != count:
-            what = f"has the shape {array.shape}, which does not fit {count} wavelengths"
+        if len(shape) != 3 or count not in (shape[2], shape[0]):
+            what = f"has the shape {shape}, which does not fit {count} wavelengths"
             raise problem(path, f"{what}; save it as (height, width, wavelengths)")
-        self._array = array
-        self.shape = array.shape[:2]
+        self.shape = (shape[1], shape[2]) if self._bands_first else (shape[0], shape[1])
         self._check()
+        lines = int(self._bands_first)
+        self._reversed = fortran  # Fortran's order is that of C with the axes reversed
+        stored = shape[::-1] if fortran else shape
+        self._array = StoredArray(path, dtype, offset, stored, 2 - lines if fortran else lines)
 
     def _beside(self) -> tuple[NDArray[np.float64], list[str]]:
         for suffix in (".csv", ".txt", ".npy"):
@@ -132,8 +136,12 @@ class NpyCube(SpectralCube):
 
     def close(self) -> None:
         """Lets go of the file."""
-        self._array = np.empty((0, 0, 0))
+        self._array.close()
 
     def rows(self, rows: slice) -> NDArray[np.float32]:
         """(h, W, n) values of some rows."""
-        return np.ascontiguousarray(self._array[rows], dtype=np.float32)
+        stored = self._array.rows(rows)
+        values = stored.transpose() if self._reversed else stored
+        values = np.moveaxis(values, 0, 2) if self._bands_first else values
+        with np.errstate(over="ignore"):
+            return np.ascontiguousarray(values, dtype=np.float32)

@@ -3,8 +3,8 @@
 What is unambiguous is converted and said in a note; what is not is refused.
 """
 
-import csv
 import os
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -17,9 +17,12 @@ HIGHEST = 1.2
 """Reflectance above which a value is no skin: left out, like one below 0."""
 _FRACTION, _PERCENT = 1.5, 130.0
 _UNITS = {
-    "nanometers": 1.0, "nanometres": 1.0, "nm": 1.0,
-    "micrometers": 1e3, "micrometres": 1e3, "microns": 1e3, "um": 1e3, "µm": 1e3, "μm": 1e3,
-}  # fmt: skip
+    **dict.fromkeys(("nm", "nanometer", "nanometre"), 1.0),
+    **dict.fromkeys(("um", "µm", "μm", "micrometer", "micrometre", "micron"), 1e3),
+    **dict.fromkeys(("å", "a", "angstrom", "ångström", "angström"), 0.1),
+    **dict.fromkeys(("m", "meter", "metre"), 1e9),
+}
+_MOST_NAMED = 3
 
 
 def nanometres(
@@ -27,20 +30,24 @@ def nanometres(
 ) -> tuple[NDArray[np.float64], list[str]]:
     """Wavelengths (n,) in nm, with notes. `unit` is what the file calls theirs, if it does.
 
-    Without a unit, wavelengths all below 10 are taken for micrometres.
+    In the singular or plural, with or without braces. Without a unit, wavelengths all below 10 are
+    taken for micrometres.
     """
     found = np.asarray(values, dtype=np.float64)
     if not found.size or not (np.isfinite(found).all() and (found > 0).all()):
         raise problem(path, "some wavelengths are missing or not above 0; repair the list")
-    unit = (unit or "").strip().lower()
-    if unit in ("", "unknown"):
+    unit = (unit or "").strip("{}[]() \t").lower()
+    if unit in ("", "unknown", "none"):
         if found.max() < 10:
             return found * 1e3, ["wavelengths are below 10: taken for micrometres"]
         return found, []
-    if unit not in _UNITS:
+    factor = _UNITS.get(unit, _UNITS.get(unit.removesuffix("s")))
+    if factor is None:
         what = f"wavelengths in {shorten(unit)} are not known; give a list in nm by --wavelengths"
         raise problem(path, what)
-    return found * _UNITS[unit], []
+    if factor == 1 and found.max() < 10:
+        return found * 1e3, ["wavelengths are below 10, not in nm: taken for micrometres"]
+    return found * factor, []
 
 
 def fraction_scale(
@@ -49,23 +56,88 @@ def fraction_scale(
     """What stored values are to be multiplied by to be fractions, with notes.
 
     `sample` are values of the file, any shape, NaN allowed; `scale` the stored value that means 1
-    where that is known. Values are percent where the largest of the sample's spectra say so.
+    where that is known. Values are percent where the largest of the sample's spectra say so and
+    they are no whole numbers, which may be counts of any number of bits.
     """
     if scale is not None:
-        if not (np.isfinite(scale) and scale > 0):
-            raise CutisError(f"scale = {scale:g}: it is the stored value that means 1, above 0")
-        return 1 / scale, []
-    values = np.asarray(sample, dtype=np.float64)
-    values = values[np.isfinite(values) & (values > 0)]
+        return 1 / _given(scale), []
+    values = _positive(sample)
     if not values.size:
         raise problem(path, "has no value above 0; export its reflectance again")
+    factor, doubt = _guess(values)
+    if doubt:
+        raise problem(path, doubt)
+    return factor, [] if factor == 1 else [f"values of up to {_top(values)}: taken for percent"]
+
+
+def spectrum_scales(
+    path: Path,
+    values: NDArray[np.float64],
+    scale: float | None,
+    percent: NDArray[np.bool_],
+    names: Sequence[str],
+) -> tuple[NDArray[np.float64], list[str]]:
+    """(n,) the same for each spectrum of (n, w) values of a table, with notes.
+
+    `percent` (n,) are those of which the table says so; `names` say which is which, for people.
+    """
+    if scale is not None:
+        return np.full(len(values), 1 / _given(scale)), []
+    if not _positive(values).size:
+        raise problem(path, "has no value above 0; export its reflectance again")
+    found = np.full(len(values), np.nan)
+    guessed: list[int] = []
+    for i, row in enumerate(values):
+        positive = _positive(row)
+        if not positive.size:
+            continue
+        found[i], doubt = _guess(positive, bool(percent[i]))
+        if doubt:
+            raise problem(path, f"{names[i]}: {doubt}")
+        if not percent[i] and found[i] != 1:
+            guessed.append(i)
+    notes = ["in percent, as the table says"] if percent.any() else []
+    if guessed:
+        rest = bool((found == 1).any())
+        listed = ", ".join(names[i] for i in guessed[:_MOST_NAMED])
+        which = f" ({listed}{', …' if len(guessed) > _MOST_NAMED else ''})" if rest else ""
+        top = _top(np.concatenate([_positive(values[i]) for i in guessed]))
+        notes.append(f"values of up to {top}: taken for percent{which}")
+    found[np.isnan(found)] = 1.0
+    return found, notes
+
+
+def _guess(values: NDArray[np.float64], percent: bool = False) -> tuple[float, str]:
+    """What values above 0 are to be multiplied by, and why that cannot be told, "" if it can.
+
+    `percent` says that the file calls them so.
+    """
     top = float(np.percentile(values, 95))
     if top <= _FRACTION:
-        return 1.0, []
-    if top <= _PERCENT:
-        return 0.01, [f"values of up to {top:.3g}: taken for percent"]
-    what = f"values of up to {top:.4g} are neither fractions nor percent"
-    raise problem(path, f"{what}; give the value that means 1: --scale 10000, say")
+        what = "is said to be percent, but looks like fractions"
+        return 1.0, f"{what}; give the value that means 1: --scale 1" if percent else ""
+    if top > _PERCENT:
+        what = f"values of up to {top:.4g} are neither fractions nor percent"
+        return 1.0, f"{what}; give the value that means 1: --scale 10000, say"
+    if not percent and (values == np.rint(values)).all():
+        what = f"whole numbers of up to {values.max():.4g} are percent or counts"
+        return 0.01, f"{what}; give the value that means 1: --scale 100, or --scale 255"
+    return 0.01, ""
+
+
+def _top(values: NDArray[np.float64]) -> str:
+    return f"{float(np.percentile(values, 95)):.3g}"
+
+
+def _given(scale: float) -> float:
+    if not (np.isfinite(scale) and scale > 0):
+        raise CutisError(f"scale = {scale:g}: it is the stored value that means 1, above 0")
+    return scale
+
+
+def _positive(values: ArrayLike) -> NDArray[np.float64]:
+    found = np.asarray(values, dtype=np.float64)
+    return found[np.isfinite(found) & (found > 0)]
 
 
 def without_impossible(
@@ -77,44 +149,3 @@ def without_impossible(
         low, high = found < 0, found > HIGHEST
     found[low | high | np.isinf(found)] = np.nan
     return found, int(low.sum()), int(high.sum())
-
-
-def read_wavelengths(path: str | os.PathLike[str]) -> tuple[NDArray[np.float64], list[str]]:
-    """Wavelengths, nm, of a .npy file or of a text file with numbers in its first column."""
-    path = Path(path)
-    if not path.is_file():
-        raise problem(path, "no such file; give the list of wavelengths")
-    if path.suffix.lower() == ".npy":
-        return nanometres(path, np.ravel(load_array(path)))
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError:
-        raise problem(path, "is no text in UTF-8; give wavelengths one a line") from None
-    lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
-    try:
-        rows = [[c for c in row if c.strip()] for row in csv.reader(lines)]
-        if len(rows) == 1:
-            return nanometres(path, [float(cell) for cell in rows[0]])
-        first = 0 if rows and _is_number(rows[0][0]) else 1
-        return nanometres(path, [float(row[0]) for row in rows[first:]])
-    except (ValueError, IndexError, csv.Error):
-        raise problem(path, "is no list of wavelengths; write them one a line, in nm") from None
-
-
-def load_array(path: Path) -> NDArray[np.generic]:
-    """A .npy file of numbers, mapped, not read; CutisError where it is something else."""
-    try:
-        array = np.load(path, mmap_mode="r", allow_pickle=False)
-    except (ValueError, OSError, EOFError) as error:
-        raise problem(path, "is no NumPy array of numbers; save it again by numpy.save") from error
-    if not isinstance(array, np.ndarray) or array.dtype.kind not in "fui":
-        raise problem(path, "is no NumPy array of real numbers; save it again by numpy.save")
-    return array
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True

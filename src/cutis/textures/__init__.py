@@ -1,7 +1,12 @@
 """Image files: textures as stored, masks and named channels, read and written without surprises."""
 
-from cutis.textures.atomic import replacing, sweep
+from typing import Any
+
+from cutis.moved import moved
+from cutis.textures.atomic import check_outputs, replacing, sweep
 from cutis.textures.channels import ChannelFile, channel_writer, read_channels, write_channels
+from cutis.textures.frame import Frame
+from cutis.textures.labels import LabelFile
 from cutis.textures.mask import MaskFile, read_mask
 from cutis.textures.reading import TextureFile, read_texture
 from cutis.textures.spaces import colour_space
@@ -10,11 +15,14 @@ from cutis.textures.writing import format_of, texture_writer, write_texture
 
 __all__ = [
     "ChannelFile",
+    "Frame",
+    "LabelFile",
     "MaskFile",
     "Texture",
     "TextureFile",
     "bands",
     "channel_writer",
+    "check_outputs",
     "colour_space",
     "format_of",
     "read_channels",
@@ -26,3 +34,14 @@ __all__ = [
     "write_channels",
     "write_texture",
 ]
+
+_MOVED = {
+    "SpectralCube": "cutis.spectra:SpectralCube",
+    "open_cube": "cutis.spectra:open_cube",
+    "write_clf": "cutis.luts:write_clf",
+    "write_cube": "cutis.luts:write_cube",
+}
+
+
+def __getattr__(name: str) -> Any:
+    return moved(__name__, name, _MOVED)

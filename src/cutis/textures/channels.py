@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from cutis.textures.closing import Closing
 from cutis.textures.decoding import Decoder
 from cutis.textures.encoding import encoder
+from cutis.textures.frame import Frame, whole_frame
 from cutis.textures.problem import problem
 from cutis.textures.texture import bands
 
@@ -59,11 +60,13 @@ def channel_writer(
     dtype: Literal["float", "half"] = "float",
     metadata: Mapping[str, Value] | None = None,
     half: Collection[str] = (),
+    frame: Frame | None = None,
 ) -> Iterator[Callable[[Mapping[str, NDArray[np.generic]]], None]]:
     """What `write_channels` does, some rows at a time.
 
     Yields a function that takes the next rows, top to bottom: arrays (h, W) by name. `half` names
-    channels that are stored as half whatever `dtype` says.
+    channels that are stored as half whatever `dtype` says, `frame` where the texels lie on their
+    picture: it becomes the windows.
     """
     path, (height, width) = Path(path), shape
     if path.suffix.lower() != ".exr":
@@ -76,6 +79,7 @@ def channel_writer(
         spec.channelformats = tuple(
             oiio.TypeHalf if name in half else oiio.TypeFloat for name in names
         )
+    (whole_frame(shape) if frame is None else frame).to(spec)
     spec.attribute("compression", "zip")
     metadata = metadata or {}
     if len({name.lower() for name in metadata}) < len(metadata):
@@ -110,9 +114,9 @@ def channel_writer(
 class ChannelFile(Closing):
     """An open OpenEXR file of named channels (its first part), read some rows at a time.
 
-    `names` are its channels, `metadata` what its header says, as text or numbers; other metadata is
-    left out. Raises CutisError, one line that names the file, if it cannot be read or is no OpenEXR
-    file. Close it, or use it in a with block.
+    `names` are its channels, `frame` says where they lie on their picture, `metadata` what the
+    header says, as text or numbers; other metadata is left out. Raises CutisError, one line that
+    names the file, if it cannot be read or is no OpenEXR file. Close it, or use it in a with block.
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
@@ -122,7 +126,7 @@ class ChannelFile(Closing):
         if kind != "openexr":
             self.close()
             raise problem(path, f"is a {kind.upper()} file; named channels need OpenEXR")
-        self.shape = self._source.shape
+        self.shape, self.frame = self._source.shape, self._source.frame
         self.names = tuple(self._source.spec.channelnames)
         self.metadata = _metadata(self._source.spec)
 

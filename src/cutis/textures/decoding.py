@@ -1,7 +1,8 @@
 """The one way in through OpenImageIO: stored values of any supported file, rows at a time."""
 
 import os
-from dataclasses import dataclass
+import re
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -9,9 +10,13 @@ import OpenImageIO as oiio
 from numpy.typing import NDArray
 
 from cutis.textures.closing import Closing
-from cutis.textures.headers import image_format
+from cutis.textures.frame import frame_of
+from cutis.textures.headers import Header, image_header
+from cutis.textures.ifd import COMPRESSION, SUB_DIRECTORIES, SUBFILE
 from cutis.textures.limits import check_claim, check_size, check_tile
+from cutis.textures.parts import chosen_part
 from cutis.textures.problem import check_name, problem, shorten
+from cutis.textures.turning import Orientation, orientation_of, turned, upright
 
 STORED_AS = {
     "uint8": "uint8",
@@ -28,37 +33,66 @@ _PACKING = {
     *("none", "packbits", "lzw", "zip", "jpeg"),  # TIFF
     *("rle", "zips", "piz", "pxr24", "b44", "b44a"),  # OpenEXR, which has none and zip too
 }
+# TIFF's compressions that not every program can unpack, by their numbers.
+_UNUSUAL = {
+    2: "CCITT coding", 3: "CCITT coding", 4: "CCITT coding", 6: "JPEG of the old kind",
+    34661: "JBIG", 34712: "JPEG 2000", 33003: "JPEG 2000", 33005: "JPEG 2000", 34887: "LERC",
+    34892: "lossy JPEG of DNG", 34925: "LZMA", 50000: "Zstandard", 34926: "Zstandard",
+    34927: "WebP", 50001: "WebP", 50002: "JPEG XL", 52546: "JPEG XL",
+}  # fmt: skip
+_NOT_SUPPORTED = re.compile(
+    r"not (configured|implemented|supported)|unsupported|unknown compression", re.IGNORECASE
+)
+_INSTEAD = {
+    "tiff": "save it with LZW or ZIP",
+    "openexr": "save it with ZIP",
+    "jpeg": "save it as an ordinary JPEG, or as PNG",
+    **dict.fromkeys(("png", "dpx", "psd"), "export it in another way"),
+}
+"""What to do about a packing that cannot be unpacked."""
 
 
 class Decoder(Closing):
-    """First image of an open file; `rows` gives stored values (h, W, C) of rows from top to bottom.
+    """The picture of an open file; `rows` gives stored values (h, W, C) from top to bottom.
 
     Values are uint8, uint16, float16 or float32. `step` is the number of rows that are stored
     together: bands of rows that start at multiples of it are cheapest. Memory is that of the rows
-    asked for, except for formats whose decoders hold a whole image (interlaced PNG, PSD). Close it,
-    or use it in a with block.
+    asked for, except for formats whose decoders hold a whole image (interlaced PNG, PSD) and for
+    pictures that are stored turned. Close it, or use it in a with block.
+
+    Rows are those of the picture as viewers show it: turned as its `orientation` tag says, unless
+    that is to be ignored. `frame` says where texels lie on it, `spec` is the header as it would be
+    of an upright picture, `notes` say in words what was done. Of several pictures in the file the
+    first full-size one that is `usable` is read.
 
     Raises CutisError, in one line, for a file that is missing or not whole, too large, deep, CMYK,
     or of a sample type that cannot be kept; what is not whole may show only at the rows concerned.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(
+        self,
+        path: Path,
+        orientation: Orientation = "auto",
+        usable: Callable[[oiio.ImageSpec], bool] = lambda _: True,
+    ) -> None:
         self.path = path
-        self.file_format = image_format(path)
+        self.header = image_header(path)
+        self.file_format = self.header.format
         check_name(path)
         hints = oiio.ImageSpec()
         hints.attribute("oiio:UnassociatedAlpha", 1)  # leave alpha alone, however it is stored
         source = oiio.ImageInput.open(str(path), hints)
         if source is None:
-            raise _unreadable(path, pending_error())
+            raise _unreadable(path, pending_error(), self.header)
         self._source = source
+        self._whole: NDArray[np.generic] | None = None
         try:
-            self.spec: oiio.ImageSpec = source.spec().copy()
-            "".join(self.spec.channelnames).encode()  # what is not UTF-8 comes as lone surrogates
-            self.stored_as = _check(path, self.spec)
-            _check_claim(path, self.file_format, self.spec, self.stored_as)
-            together = int(self.spec.get_int_attribute("oiio:RowsPerChunk", 1))
-            self.step = self.spec.tile_height or min(max(1, together), self.spec.height)
+            self.part, self.notes = chosen_part(source, self.header, usable)
+            self._stored: oiio.ImageSpec = source.spec().copy()
+            "".join(self._stored.channelnames).encode()  # no UTF-8 comes as lone surrogates
+            self.stored_as = _check(path, self._stored, self.header, self.part)
+            _check_claim(path, self.file_format, self._stored, self.stored_as)
+            self._turn(orientation)
         except UnicodeError as cause:
             self.close()
             raise problem(path, "is damaged: a name in it is not text; export it again") from cause
@@ -66,9 +100,24 @@ class Decoder(Closing):
             self.close()
             raise
 
+    def _turn(self, orientation: Orientation) -> None:
+        """Decides how the picture is turned, and describes it."""
+        stored = self._stored
+        self.orientation = 1
+        number, notes = orientation_of(stored, self.header, self.part, orientation)
+        self.notes += notes
+        self.spec = stored if number == 1 else turned(stored, number)
+        self.orientation = number
+        self.frame = frame_of(self.spec, self.file_format)
+        together = int(stored.get_int_attribute("oiio:RowsPerChunk", 1))
+        self.step = stored.tile_height or min(max(1, together), stored.height)
+        if number != 1:
+            self.step = 1
+
     def close(self) -> None:
         """Lets go of the file; a second call does nothing."""
         self._source.close()
+        self._whole = None
         pending_error(self._source)
 
     @property
@@ -84,8 +133,19 @@ class Decoder(Closing):
 
     def rows(self, rows: slice) -> NDArray[np.generic]:
         """Stored values (h, W, C) of some rows."""
-        spec, source = self.spec, self._source
-        top, bottom, _ = rows.indices(spec.height)
+        top, bottom, _ = rows.indices(self.spec.height)
+        if bottom <= top:
+            return np.empty((0, self.spec.width, self.spec.nchannels), self.dtype)
+        if self.orientation == 1:
+            return self._rows(top, bottom)
+        if self._whole is None:
+            check_memory(self.path, self._stored, self.stored_as)
+            self._whole = self._rows(0, self._stored.height)
+        return np.ascontiguousarray(upright(self._whole, self.orientation)[top:bottom])
+
+    def _rows(self, top: int, bottom: int) -> NDArray[np.generic]:
+        """Rows as they are stored."""
+        spec, source = self._stored, self._source
         left, right = spec.x, spec.x + spec.width
         count = spec.nchannels
         try:
@@ -108,24 +168,8 @@ class Decoder(Closing):
         except UnicodeError as cause:
             raise problem(self.path, "is damaged; copy or export it again") from cause
         if pixels is None or error:
-            raise _unreadable(self.path, error)
+            raise _unreadable(self.path, error, self.header, self.part)
         return np.asarray(pixels).reshape(bottom - top, spec.width, count)
-
-
-@dataclass(frozen=True, eq=False)
-class Decoded:
-    """`pixels` (H, W, C) as they are stored: uint8, uint16, float16 or float32."""
-
-    pixels: NDArray[np.generic]
-    spec: oiio.ImageSpec
-    format: str
-
-
-def decode(path: Path) -> Decoded:
-    """All of the first image of a file; see `Decoder`."""
-    with Decoder(path) as source:
-        check_memory(path, source.spec, source.stored_as)
-        return Decoded(source.rows(slice(None)), source.spec, source.file_format)
 
 
 def pending_error(source: oiio.ImageInput | oiio.ImageOutput | None = None) -> str:
@@ -150,6 +194,12 @@ def is_palette(spec: oiio.ImageSpec) -> bool:
     return photometric(spec) == _PALETTE
 
 
+def has_colour(spec: oiio.ImageSpec) -> bool:
+    """Whether there are R, G, B channels, in one layer or several."""
+    found = {name.rpartition(".")[2].lower() for name in spec.channelnames}
+    return {"r", "g", "b"} <= found and photometric(spec) not in _GREY_PHOTOMETRICS
+
+
 def check_finite(path: Path, values: NDArray[np.generic], first_row: int = 0) -> None:
     """Refuse NaN and infinity in `values` (h, W, C), naming how many texels and where the first."""
     if values.dtype.kind != "f":
@@ -163,13 +213,18 @@ def check_finite(path: Path, values: NDArray[np.generic], first_row: int = 0) ->
         raise problem(path, f"{texels} NaN or infinite, {where}; repair or repaint them")
 
 
-def _check(path: Path, spec: oiio.ImageSpec) -> str:
+def _check(path: Path, spec: oiio.ImageSpec, header: Header, part: int) -> str:
     """The type to read as, after refusing what cannot be read faithfully."""
     if spec.deep:
         raise problem(path, "is a deep image; flatten it first")
     check_size(path, spec.width, spec.height)
     if spec.depth > 1:
         raise problem(path, f"is a volume of {spec.depth} slices; give a flat image")
+    if header.format == "tiff" and part < len(header.pages):
+        page = header.pages[part]
+        if page.number(SUBFILE) & 1 and SUB_DIRECTORIES in page.tags:
+            what = "holds a thumbnail, and its picture where only raw converters look"
+            raise problem(path, f"{what}; develop or export it as TIFF of 16 bit")
     model = photometric(spec)
     kind = spec.get_string_attribute("jpeg:ColorSpace")
     if model == 5 or kind in ("CMYK", "YCCK"):
@@ -223,9 +278,16 @@ def available_memory() -> int | None:
         return None
 
 
-def _unreadable(path: Path, error: str) -> Exception:
+def _unreadable(path: Path, error: str, header: Header, part: int = 0) -> Exception:
     first = next((line.strip() for line in error.splitlines() if line.strip()), "")
     if "image size" in first and "exceeds" in first:
         return problem(path, f"is too large ({first}); split it into tiles")
+    if _NOT_SUPPORTED.search(first):
+        packing = header.kind
+        if header.format == "tiff" and part < len(header.pages):
+            packing = _UNUSUAL.get(header.pages[part].number(COMPRESSION), "")
+        packing = packing or f"a way unknown here ({shorten(first)})"
+        instead = _INSTEAD[header.format]
+        return problem(path, f"is packed with {packing}, which is not supported; {instead}")
     detail = f" ({shorten(first)})" if first else ""
     return problem(path, f"is damaged or truncated{detail}; copy or export it again")

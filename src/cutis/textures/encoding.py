@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from cutis.errors import CutisError
 from cutis.textures.atomic import replacing
 from cutis.textures.decoding import pending_error
-from cutis.textures.headers import image_format
 from cutis.textures.mip import Pyramid
+from cutis.textures.png import check_png
 from cutis.textures.problem import check_name, problem, reason
 
 # libtiff is asked for an empty EXIF block and declines; the image is complete all the same.
@@ -66,14 +66,14 @@ class Encoder:
 
     def __init__(self, path: Path, name: str, file_format: str, spec: oiio.ImageSpec) -> None:
         """Opens `name`; complaints name `path`."""
-        self._path, self._spec, self._row = path, spec, 0
+        self._path, self._name, self._spec, self._row = path, name, spec, 0
         self._waiting: list[Pixels] = []  # rows that do not fill a row of tiles yet
         sink = oiio.ImageOutput.create(file_format)
         if sink is None:
             raise _failed(path, pending_error())
         # Writing after a failed open ends the process.
         if not sink.open(name, spec):
-            raise _failed(path, pending_error(sink))
+            raise self._failed(pending_error(sink))
         self._sink = sink
 
     def __enter__(self) -> "Encoder":
@@ -88,9 +88,14 @@ class Encoder:
         error = pending_error(self._sink)
         # PNG returns True on a full disk and tells only here.
         if not good or set(error.splitlines()) - _HARMLESS:
-            raise _failed(self._path, error)
+            raise self._failed(error)
         if self._row != self._spec.height:
-            raise _failed(self._path, f"{self._row} of {self._spec.height} rows came")
+            raise self._failed(f"{self._row} of {self._spec.height} rows came")
+
+    def _failed(self, error: str) -> Exception:
+        """The failure, of the file by its final name."""
+        final = error.replace(self._name, str(self._path))
+        return _failed(self._path, final.replace(Path(self._name).name, self._path.name))
 
     def _abandon(self) -> None:
         """Closes a file that nobody will see. PNG complains on the terminal unless it is whole."""
@@ -133,8 +138,7 @@ class Encoder:
         else:
             good = self._sink.write_scanlines(top, bottom, spec.z, pixels)
         if not good:
-            error = pending_error(self._sink)
-            raise _failed(self._path, error)
+            raise self._failed(pending_error(self._sink))
         self._row += len(pixels)
 
 
@@ -149,7 +153,6 @@ class MipEncoder(Encoder):
         if spec.image_bytes() > _BIG:
             spec.attribute("tiff:bigtiff", 1)
         shape, dtype = (spec.height, spec.width, spec.nchannels), _DTYPES[str(spec.format)]
-        self._name = name
         self._pyramid = Pyramid(shape, np.dtype(dtype), path.parent)
         try:
             super().__init__(path, name, "tiff", spec)
@@ -163,7 +166,7 @@ class MipEncoder(Encoder):
         try:
             self._pyramid.push(pixels)
         except OSError as error:
-            raise _failed(self._path, reason(error)) from error
+            raise self._failed(reason(error)) from error
 
     def __exit__(self, kind: type[BaseException] | None, *rest: object) -> None:
         try:
@@ -181,7 +184,7 @@ class MipEncoder(Encoder):
             spec.full_x = spec.full_y = spec.x = spec.y = 0
             spec.full_height, spec.full_width = spec.height, spec.width
             if not self._sink.open(self._name, spec, "AppendSubimage"):
-                raise _failed(self._path, pending_error(self._sink))
+                raise self._failed(pending_error(self._sink))
             self._spec, self._row = spec, 0
             for band in rows:
                 super().write(band)
@@ -191,7 +194,8 @@ def _check_whole(path: Path, temporary: Path, file_format: str) -> None:
     """Some say nothing when the last bytes find no room: look whether they are there."""
     if file_format == "png":
         try:
-            image_format(temporary)
+            with temporary.open("rb") as file:
+                check_png(temporary, file, inflate=False)
         except CutisError as cause:
             raise _failed(path, "the file came out incomplete") from cause
     elif file_format in ("openexr", "dpx"):

@@ -1,8 +1,10 @@
 """Colour spaces of OpenColorIO configurations: names, aliases and roles."""
 
+import hashlib
 import os
 from dataclasses import dataclass, field
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,6 +19,8 @@ from cutis.colour.spaces import (
     chromaticities_of,
 )
 from cutis.errors import CutisError
+from cutis.textures.ocio_files import check_config_file, check_lookups
+from cutis.textures.problem import shorten
 
 BUILT_IN = "ocio://studio-config-v2.2.0_aces-v1.3_ocio-v2.4"
 """The configuration when none is given, by its full name: `default` changes with releases."""
@@ -47,6 +51,13 @@ class OcioSpace:
     config: str | None = None
     chromaticities: tuple[float, ...] | None = field(default=None, compare=False)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Travels to other processes by name; what arrives is checked to be the same."""
+        config = self.config
+        if config is not None and "://" not in config:
+            config = os.path.abspath(config)
+        return _reopened, (self.name, config, _content(config))
+
     def to_linear_srgb(self, values: ArrayLike) -> NDArray[np.floating]:
         """(..., 3) stored values → linear sRGB, float32."""
         return self.connection.to_linear_srgb(_applied(self.to, values))
@@ -54,6 +65,25 @@ class OcioSpace:
     def from_linear_srgb(self, rgb: ArrayLike) -> NDArray[np.floating]:
         """(..., 3) linear sRGB → stored values, float32."""
         return _applied(self.back, self.connection.from_linear_srgb(rgb))
+
+
+def _content(config: str | None) -> str:
+    """SHA-256 of a configuration's file; empty for those that come with OpenColorIO."""
+    if config is None or "://" in config:
+        return ""
+    return hashlib.sha256(Path(config).read_bytes()).hexdigest()
+
+
+def _reopened(name: str, config: str | None, content: str) -> Space:
+    """A space that came from another process; CutisError where it is another one here."""
+    try:
+        same = _content(config) == content
+    except OSError as error:
+        raise CutisError(f"{config}: {error.strerror}; all processes need this file") from error
+    found = ocio_space(name, config) if same else None
+    if found is None:
+        raise CutisError(f"{config}: another configuration than where this work was started")
+    return found
 
 
 def _applied(processor: Any, values: ArrayLike) -> NDArray[np.float32]:
@@ -93,12 +123,13 @@ def ocio_space(name: str, config: str | None = None) -> Space | None:
     if space.isData():
         raise CutisError(f"{space.getName()} holds data, not colour; name a colour space")
     connection, here = _connection(known, config or BUILT_IN)
+    check_lookups(known, config or BUILT_IN, (space.getName(), here))
     lossless = ocio.OPTIMIZATION_LOSSLESS
     try:
         to = known.getProcessor(space.getName(), here).getOptimizedCPUProcessor(lossless)
         back = known.getProcessor(here, space.getName()).getOptimizedCPUProcessor(lossless)
     except (ocio.Exception, ocio.ExceptionMissingFile) as error:
-        reason = str(error).splitlines()[0]
+        reason = shorten(str(error).splitlines()[0])
         raise CutisError(f"{name}: OpenColorIO cannot convert it both ways ({reason})") from error
     found = OcioSpace(space.getName(), True, to, back, connection, config)
     return _ours(found) or _described(found)
@@ -161,7 +192,8 @@ def _config(path: str) -> Any:
     import PyOpenColorIO as ocio
 
     try:
+        check_config_file(path)
         return ocio.Config.CreateFromFile(path)
-    except (ocio.Exception, ocio.ExceptionMissingFile, UnicodeError) as error:
-        text = str(error).splitlines()[0]
+    except (ocio.Exception, ocio.ExceptionMissingFile, CutisError, UnicodeError) as error:
+        text = shorten(str(error).removeprefix(f"{path}: ").splitlines()[0])
         raise CutisError(f"{path}: not a usable OpenColorIO configuration ({text})") from error

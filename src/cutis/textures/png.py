@@ -1,14 +1,16 @@
 """PNG files looked through before a decoder sees them [png].
 
 The PNG decoder prints what is wrong with a file on the terminal, and OpenImageIO gives no way to
-stop it. So whatever it would refuse is found here first: chunks, checksums, the header, and the
-compressed rows, which are inflated a piece at a time.
+stop it. So whatever it would refuse is found here first: chunks, checksums, the header, and, in
+files of usual length, the compressed rows, which are inflated a piece at a time. What the chunks
+say of colour, orientation and further pictures is kept.
 """
 
 import os
 import struct
 import zlib
 from collections.abc import Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import BinaryIO
 
@@ -24,23 +26,39 @@ _ADAM7 = ((0, 0, 8, 8), (4, 0, 8, 8), (0, 4, 4, 8), (2, 0, 4, 4), (0, 2, 2, 4), 
           (0, 1, 1, 2))  # fmt: skip
 _WHOLE = ((0, 0, 1, 1),)
 _FILTERS = 5
+_SIGNATURE = 8  # bytes
 _PIECE = 1 << 20
+_INFLATED = 16 << 20  # bytes of a file: with right checksums only a hostile one has wrong rows
+_KEPT = {b"cICP", b"iCCP", b"sRGB", b"gAMA", b"cHRM", b"eXIf", b"acTL"}
+_TEXTS = {b"tEXt", b"zTXt", b"iTXt"}
+_LONGEST_KEPT, _MOST_TEXTS = 1 << 16, 1000
 
 
-def png_colour_type(path: Path) -> int:
-    """Colour type in the header of a PNG that `check_png` accepted: 3 is a palette."""
-    with open(path, "rb") as file:
-        return file.read(26)[25]
+@dataclass(frozen=True)
+class PngChunks:
+    """What a PNG says beside its pixels: its chunks by name, and texts by keyword, as bytes."""
+
+    palette: bool = False
+    chunks: dict[bytes, bytes] = field(default_factory=dict)
+    texts: dict[bytes, bytes] = field(default_factory=dict)
 
 
-def check_png(path: Path, file: BinaryIO) -> None:
-    """Refuse what the decoder would complain of; `file` stands behind the signature.
+def check_png(path: Path, file: BinaryIO, inflate: bool = True) -> PngChunks:
+    """Refuse what the decoder would complain of.
 
-    Raises CutisError where chunks are missing, cut off, damaged or out of order, where the header
-    makes no sense or is too large, or where the rows are not all there.
+    Without `inflate`, and in files above 16 MiB, the rows are judged by checksums alone. Raises
+    CutisError where chunks are missing, cut off, damaged or out of order, where the header makes no
+    sense or is too large, or where the rows are not all there.
     """
     rows, seen = None, set()
+    kept: dict[bytes, bytes] = {}
+    texts: dict[bytes, bytes] = {}
+    file.seek(_SIGNATURE)
+    inflated = inflate and os.fstat(file.fileno()).st_size <= _INFLATED
     for kind, pieces in _chunks(path, file):
+        if kind == b"CgBI":
+            what = "is a PNG as Xcode packs them, which other programs cannot read; export it again"
+            raise problem(path, what)
         if rows is None:
             header = b"" if kind != b"IHDR" else b"".join(pieces)
             if len(header) != 13:
@@ -51,19 +69,51 @@ def check_png(path: Path, file: BinaryIO) -> None:
         elif kind == b"IDAT":
             if rows.colour == _PALETTE and b"PLTE" not in seen:
                 raise _damaged(path, "its palette is missing")
-            for piece in pieces:
+            for piece in pieces if inflated else ():
                 rows.take(piece)
         elif kind == b"PLTE":
             size = sum(len(piece) for piece in pieces)
             if rows.colour == _PALETTE and (size % 3 or not 0 < size <= 768):
                 raise _damaged(path, "its palette is damaged")
         elif kind == b"IEND":
-            rows.finish()
+            if inflated:
+                rows.finish()
+        elif kind in _KEPT and kind not in kept:
+            kept[kind] = _start(pieces)
+        elif kind in _TEXTS and len(texts) < _MOST_TEXTS:
+            keyword, text = _text(kind, _start(pieces))
+            texts.setdefault(keyword, text)
         elif not (kind.isalpha() and kind[:1].islower()):
             raise _damaged(path, "it has a part that no program knows")
         for _ in pieces:
             pass
         seen.add(kind)
+    return PngChunks(rows is not None and rows.colour == _PALETTE, kept, texts)
+
+
+def _start(pieces: Iterator[bytes]) -> bytes:
+    """What a chunk holds, cut at 64 KiB."""
+    start = b""
+    for piece in pieces:
+        start += piece[: _LONGEST_KEPT - len(start)]
+    return start
+
+
+def _text(kind: bytes, data: bytes) -> tuple[bytes, bytes]:
+    """Keyword, in lower case, and text of a chunk of text, unpacked as far as it is kept."""
+    keyword, _, text = data.partition(b"\0")
+    packed = kind == b"zTXt"
+    if kind == b"iTXt":
+        packed = text[:1] == b"\1"
+        text = text[2:].split(b"\0", 2)[-1]  # behind language and translated keyword
+    elif packed:
+        text = text[1:]
+    if packed:
+        try:
+            text = zlib.decompressobj().decompress(text, _LONGEST_KEPT)
+        except zlib.error:
+            text = b""
+    return keyword.lower(), text
 
 
 def _chunks(path: Path, file: BinaryIO) -> Iterator[tuple[bytes, Iterator[bytes]]]:

@@ -1,33 +1,41 @@
-"""ICC profiles of our own RGB spaces, for files that would otherwise not say theirs [icc].
+"""ICC profiles of RGB spaces, for files that would otherwise not say theirs [icc].
 
-Version 4: a matrix to XYZ under D50 and one parametric curve.
+Version 4: a matrix to XYZ under D50 and three curves. They are made and not kept as files, since
+spaces come with any primaries and curves that a header may state.
 """
 
 import struct
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from cutis.colour.spaces import RGBSpace, adaptation
+from cutis.colour.spaces import LINEAR, RGBSpace, adaptation
+from cutis.textures.curves import Curve, CurveSpace, PowerCurve, TableCurve
 from cutis.textures.icc import D50
 
 SRGB_CURVE = (2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045)
 """g, a, b, c, d of a parametric curve of type 3."""
 _HEADER_SIZE = 128
+_LONGEST_TABLE = 4096  # entries; readers hold no more either
 
 
-def icc_profile(space: RGBSpace) -> bytes:
+def icc_profile(space: RGBSpace | CurveSpace) -> bytes:
     """A display profile of `space`; the same bytes whenever it is made."""
-    white = space.to_xyz().sum(axis=1)
-    columns = space.to_xyz(D50).T
-    curve = _curve(space.encoded)
+    if isinstance(space, CurveSpace):
+        rec709 = LINEAR.to_xyz()
+        white, columns = rec709.sum(axis=1), (LINEAR.to_xyz(D50) @ space.matrix).T
+        curves = [_curve(curve) for curve in space.curves]
+    else:
+        white, columns = space.to_xyz().sum(axis=1), space.to_xyz(D50).T
+        curves = [_curve(PowerCurve(*SRGB_CURVE) if space.encoded else PowerCurve(1.0))] * 3
+    rgb = (b"r", b"g", b"b")
     tags = {
         b"desc": _text(space.name),
         b"cprt": _text("CC0"),
         b"wtpt": _xyz(D50),
         b"chad": b"sf32" + bytes(4) + _fixed(adaptation(white, D50)),
-        **{name + b"XYZ": _xyz(xyz) for name, xyz in zip((b"r", b"g", b"b"), columns, strict=True)},
-        **{name + b"TRC": curve for name in (b"r", b"g", b"b")},
+        **{name + b"XYZ": _xyz(xyz) for name, xyz in zip(rgb, columns, strict=True)},
+        **{name + b"TRC": curve for name, curve in zip(rgb, curves, strict=True)},
     }
     table, blob, places = struct.pack(">I", len(tags)), b"", {}
     start = _HEADER_SIZE + 4 + 12 * len(tags)
@@ -60,6 +68,20 @@ def _text(text: str) -> bytes:
     return b"mluc" + struct.pack(">4xII2s2sII", 1, 12, b"en", b"US", len(encoded), 28) + encoded
 
 
-def _curve(encoded: bool) -> bytes:
-    numbers = SRGB_CURVE if encoded else (1.0,)
-    return b"para" + struct.pack(">4xH2x", 3 if encoded else 0) + _fixed(numbers)
+def _curve(curve: Curve) -> bytes:
+    """A curve of either kind as a tag."""
+    if isinstance(curve, PowerCurve):
+        numbers: tuple[float, ...]
+        if curve.pure:
+            kind, numbers = 0, (curve.g,)
+        elif curve.e == curve.f == 0:
+            kind, numbers = 3, (curve.g, curve.a, curve.b, curve.c, curve.d)
+        else:
+            kind, numbers = 4, (curve.g, curve.a, curve.b, curve.c, curve.d, curve.e, curve.f)
+        return b"para" + struct.pack(">4xH2x", kind) + _fixed(numbers)
+    assert isinstance(curve, TableCurve)
+    light: NDArray[np.float64] = curve.light
+    if len(light) > _LONGEST_TABLE:
+        light = curve.to_linear(np.linspace(0, 1, _LONGEST_TABLE))
+    codes = np.rint(np.clip(light, 0, 1) * 65535).astype(">u2")
+    return b"curv" + struct.pack(">4xI", len(codes)) + codes.tobytes()

@@ -5,8 +5,11 @@ import OpenImageIO as oiio
 from numpy.typing import NDArray
 
 from cutis.colour.spaces import LINEAR, SRGB, RGBSpace
+from cutis.textures.curves import CurveSpace
+from cutis.textures.frame import Frame
 from cutis.textures.profile import icc_profile
 from cutis.textures.texture import Texture
+from cutis.textures.turning import turned
 
 # Other compressions would change texels that nobody touched, or are not in every build.
 _LOSSLESS = {
@@ -17,7 +20,7 @@ _LOSSLESS = {
 # one, since it knows no alternatives.
 _PRIVATE = (
     *(f"{name}:.*" for name in ("tiff", "png", "jpeg", "openexr", "oiio", "dpx", "psd")),
-    *("compression", "planarconfig", "name", "screenWindow.*"),
+    *("compression", "planarconfig", "name", "screenWindow.*", "Orientation"),
     "thumbnail.*",
 )
 # What is true of a whole texture with its MIP levels, and of the colours it had.
@@ -28,24 +31,26 @@ _MIP = (
 # What says which space the colours are in.
 _SPACE = (
     *("ICCProfile", "ICCProfile:.*", "chromaticities", "colorInteropID", "oiio:ColorSpace"),
-    *("oiio:Gamma", "CICP", "dpx:Transfer", "dpx:Colorimetric"),
+    *("oiio:Gamma", "CICP", "dpx:Transfer", "dpx:Colorimetric", "Exif:ColorSpace"),
+    *("photoshop:ICCProfile", "acesImageContainerFlag", "adoptedNeutral", "whiteLuminance"),
+    "([^:/]*[:/])*colou?r_? ?space",
 )
 # Where profiles go; the others tell a space in their own ways, and DPX hardly any.
 _PROFILED = ("png", "jpeg", "tiff", "tx")
 
 
-def header(source: Texture, fitted: Texture, file_format: str, height: int) -> oiio.ImageSpec:
-    """That of `source` as far as it fits the format, for pixels such as those of `fitted`."""
+def header(source: Texture, fitted: Texture, file_format: str, frame: Frame) -> oiio.ImageSpec:
+    """That of `source` as far as it fits the format, for pixels like those of `fitted`."""
     spec = oiio.ImageSpec() if source.spec is None else source.spec.copy()
     same_format = source.spec is not None and source.format == file_format
     mixed = spec.channelformats if same_format else ()
-    width, count = fitted.shape[1], len(fitted.channels)
-    if (spec.width, spec.height) != (width, height) or not same_format:
-        spec.x = spec.y = spec.full_x = spec.full_y = 0
-        spec.full_width, spec.full_height = width, height
+    count = len(fitted.channels)
+    if (spec.height, spec.width) != frame.shape or not same_format:
+        frame.to(spec)
         spec.tile_width = spec.tile_height = spec.tile_depth = 0
-    spec.width, spec.height, spec.depth, spec.nchannels = width, height, 1, count
-    spec.full_depth = 1
+    if same_format:
+        spec = turned(spec, source.orientation)
+    spec.nchannels, spec.depth, spec.full_depth = count, 1, 1
     spec.channelnames = fitted.channels
     spec.set_format(oiio.TypeDesc(_type_name(fitted.pixels)))
     if len(mixed) == count and fitted.pixels.dtype == np.float32:
@@ -56,7 +61,10 @@ def header(source: Texture, fitted: Texture, file_format: str, height: int) -> o
     _erase(spec, _MIP if same_format else (*_MIP, *_PRIVATE))
     if fitted.space != source.space:
         _erase(spec, _SPACE)
-    if not same_format or fitted.space != source.space or source.origin == "given":
+    other = not same_format or fitted.space != source.space or source.origin == "given"
+    aces = spec.getattribute("acesImageContainerFlag") is not None
+    _erase(spec, ("acesImageContainerFlag",))  # such a container is not packed with ZIP
+    if other or aces or file_format in _PROFILED:  # where the writer has other words than the file
         _tell_space(spec, fitted, file_format)
     _erase(spec, ("oiio:UnassociatedAlpha", "oiio:subimages"))
     if not same_format or fitted.pixels.dtype != source.pixels.dtype:
@@ -84,12 +92,20 @@ def _tell_space(spec: oiio.ImageSpec, fitted: Texture, file_format: str) -> None
     usual = LINEAR if fitted.pixels.dtype.kind == "f" else SRGB
     if (
         file_format in _PROFILED
-        and isinstance(space, RGBSpace)
+        and isinstance(space, RGBSpace | CurveSpace)
         and space != usual
         and spec.getattribute("ICCProfile") is None
+        and not (file_format == "png" and _png_says(spec, space))
     ):
+        _erase(spec, ("oiio:ColorSpace", "oiio:Gamma", "Exif:ColorSpace"))
         profile = np.frombuffer(icc_profile(space), np.uint8)
         spec.attribute("ICCProfile", oiio.TypeDesc(f"uint8[{len(profile)}]"), profile)
+
+
+def _png_says(spec: oiio.ImageSpec, space: RGBSpace | CurveSpace) -> bool:
+    """Whether the writer will say the space by PNG's own chunks: cICP, or a gamma of 1."""
+    gamma = spec.get_string_attribute("oiio:ColorSpace") == "lin_rec709_scene"
+    return spec.getattribute("CICP") is not None or (space == LINEAR and gamma)
 
 
 def _erase(spec: oiio.ImageSpec, names: tuple[str, ...]) -> None:

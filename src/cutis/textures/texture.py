@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from cutis.colour.spaces import RGBSpace, Space
 from cutis.colour.transfer import decode_srgb
 from cutis.errors import CutisError
+from cutis.textures.frame import Frame, frame_of, whole_frame
 from cutis.textures.problem import shorten
 
 STORED_TYPES = ("uint8", "uint16", "float16", "float32")
@@ -28,8 +29,9 @@ class Texture:
     them one set of R, G, B, found by name (`diffuse.R` counts where it is the only set). `space` is
     the colour space of the stored values and `origin` says in words how it is known. `spec`
     holds the metadata of the file it came from and `format` OpenImageIO's name of that format.
-    `associated` says that stored colour is multiplied by alpha. Raises CutisError if these do not
-    fit together.
+    `associated` says that stored colour is multiplied by alpha, `orientation` how the file has the
+    picture turned, as Exif numbers it; `pixels` are upright. Raises CutisError if these do not fit
+    together.
     """
 
     pixels: NDArray[np.generic]
@@ -40,6 +42,7 @@ class Texture:
     format: str | None = None
     associated: bool = False
     origin: str = "given"
+    orientation: int = 1
 
     def __post_init__(self) -> None:
         if self.pixels.ndim != 3 or self.pixels.shape[2] != len(self.channels):
@@ -54,6 +57,13 @@ class Texture:
     def shape(self) -> tuple[int, int]:
         """Height and width in texels."""
         return self.pixels.shape[0], self.pixels.shape[1]
+
+    @property
+    def frame(self) -> Frame:
+        """Where its texels lie on the picture: as its header says, if that is of all its rows."""
+        if self.spec is not None and (self.spec.height, self.spec.width) == self.shape:
+            return frame_of(self.spec, self.format or "")
+        return whole_frame(self.shape)
 
     def rows(self, rows: slice) -> "Texture":
         """The texture of some rows only."""

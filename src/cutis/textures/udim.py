@@ -1,14 +1,19 @@
 """UDIM sets: the tiles of one texture, NAME.1001.EXT, NAME.1002.EXT, …"""
 
+import contextlib
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from cutis.errors import CutisError
+from cutis.textures.decoding import Decoder
 from cutis.textures.problem import problem
 
 TOKEN = "<UDIM>"
 FIRST, LAST = 1001, 1999
 """Tile numbers: 1001 + column + 10 · row, columns 0 to 9."""
+_CAMERAS = re.compile(r"_?(IMG|MG|DSC|DJI|PXL|MVI|SAM|PIC|\d{3})")
+"""What cameras put in front of the numbers of their pictures."""
 _NUMBER = re.compile(r"^(?P<head>.*[._])(?P<tile>\d{4})(?P<tail>(\.[A-Za-z]\w*)+)$")
 
 
@@ -51,6 +56,47 @@ def missing_tiles(numbers: Sequence[int]) -> list[int]:
         columns = [number for number in numbers if (number - FIRST) // 10 == row]
         missing += [n for n in range(min(columns), max(columns)) if n not in columns]
     return missing
+
+
+def tile_sets(paths: Sequence[Path]) -> Iterator[tuple[tuple[Path, ...], str]]:
+    """Files found side by side in sets: the tiles of a texture, and the others one by one.
+
+    Names alone are no evidence, since cameras and frames number files too: tiles are those that
+    begin with 1001, leave none of a row out and are of one size. With each set comes a note for
+    people, "" for none: why files with names of tiles are not taken for tiles.
+    """
+    groups: dict[Path, list[Path]] = {}
+    for path in paths:
+        groups.setdefault(udim_pattern(path) or path, []).append(path)
+    for pattern, found in groups.items():
+        doubt = "" if len(found) < 2 else _doubt(pattern, found)
+        if not doubt:
+            yield tuple(found), ""
+            continue
+        note = (
+            f"{found[0].name} and {len(found) - 1} more like it are taken for separate captures, "
+            f"not for tiles of one texture: {doubt}; if they are, give {pattern.name}"
+        )
+        for path in found:
+            yield (path,), note if path is found[0] else ""
+
+
+def _doubt(pattern: Path, found: Sequence[Path]) -> str:
+    """Why files with names of tiles may be none; "" where nothing speaks against it."""
+    head = pattern.name.partition(TOKEN)[0]
+    numbers = [int(path.name[len(head) : len(head) + 4]) for path in found]
+    if _CAMERAS.fullmatch(head[:-1]):
+        return "cameras name their pictures so"
+    if FIRST not in numbers:
+        return f"there is no tile {FIRST}"
+    missing = missing_tiles(numbers)
+    if missing:
+        return f"tile {missing[0]} is missing"
+    sizes = set()
+    for path in found:
+        with contextlib.suppress(CutisError), Decoder(path) as file:
+            sizes.add(file.shape)
+    return "their sizes differ" if len(sizes) > 1 else ""
 
 
 def tile_of(pattern: Path, number: int) -> Path:

@@ -8,15 +8,19 @@ from pathlib import Path
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cutis.colour.spaces import SRGB, Space
 from cutis.errors import CutisError
+from cutis.textures.curves import CurveSpace
 from cutis.textures.encoding import Encoder, encoder
-from cutis.textures.icc import IccSpace
+from cutis.textures.frame import Frame, placed
+from cutis.textures.limits import check_size
 from cutis.textures.problem import problem
 from cutis.textures.spaces import sibling
 from cutis.textures.specs import header
 from cutis.textures.texture import Texture, bands, colour_channels, from_unit, to_unit
+from cutis.textures.turning import as_stored
 
 FORMATS = {
     ".png": "png",
@@ -46,8 +50,8 @@ class Source(Protocol):
     """A texture in memory or in a file."""
 
     @property
-    def shape(self) -> tuple[int, int]:
-        """Height and width in texels."""
+    def frame(self) -> Frame:
+        """Where its texels lie on the picture."""
 
     def rows(self, rows: slice) -> Texture:
         """The texture of some rows."""
@@ -72,8 +76,12 @@ def write_texture(
     `space` is the colour space to write; by default that of the texture, linear in OpenEXR. 8 bits
     become 16 where a linear space is asked for.
 
-    Of an OpenEXR file of several parts only the first was read, so only that is written. EXIF of
-    the camera survives in JPEG and PNG, not in TIFF, where OpenImageIO does not reach it.
+    OpenEXR keeps data and display window; the other formats hold the display window, the picture:
+    what is outside is cut off, and where nothing is stored they are black and transparent. A
+    picture that was stored turned is turned so again in its own format, and upright in others.
+
+    Of a file of several pictures only one was read, so only that is written. EXIF of the camera
+    survives in JPEG and PNG, not in TIFF, where OpenImageIO does not reach it.
 
     Raises CutisError, one line that names the file, for an unknown extension or a failed write (a
     file that was there is then untouched), and for what is no texture.
@@ -91,12 +99,36 @@ def write_texture(
 class TextureWriter:
     """A texture file in the making; see `texture_writer`."""
 
-    def __init__(self, sink: Encoder, file_format: str, space: Space | None) -> None:
+    def __init__(
+        self, sink: Encoder, file_format: str, space: Space | None, frame: Frame, into: Frame
+    ) -> None:
         self._sink, self._format, self._space = sink, file_format, space
+        self._frame, self._into = frame, into
+        self._turned: list[NDArray[np.generic]] = []  # rows of a picture that is stored turned
+        self._came = self._written = 0  # rows of the texture, rows of the file
 
     def write(self, part: Texture) -> None:
         """The next rows, from top to bottom."""
-        self._sink.write(_fitted(part, self._format, self._space).pixels)
+        pixels = _fitted(part, self._format, self._space).pixels
+        if part.orientation != 1 and part.format == self._format:
+            self._turned.append(pixels)
+            if sum(map(len, self._turned)) == self._frame.shape[0]:
+                self._sink.write(as_stored(np.concatenate(self._turned), part.orientation))
+            return
+        if self._frame == self._into:
+            self._sink.write(pixels)
+            return
+        top = self._frame.top + self._came
+        here = replace(self._frame, shape=(len(pixels), self._frame.shape[1]), top=top)
+        self._came += len(pixels)
+        height, width = self._into.shape
+        last = self._came == self._frame.shape[0]
+        known = height if last else min(max(self._written, top + len(pixels)), height)
+        for rows in bands((known - self._written, width)):
+            first = self._written + rows.start
+            wanted = slice(first, min(self._written + rows.stop, known))
+            self._sink.write(placed(lambda there: pixels[there], here, self._into, wanted))
+        self._written = known
 
 
 @contextlib.contextmanager
@@ -108,12 +140,17 @@ def texture_writer(
     The file has its final name when the block ends well; else nothing is left of it. Raises as
     `write_texture` does.
     """
-    path = Path(path)
+    path, frame = Path(path), like.frame
     file_format = format_of(path)
     blank = like.rows(slice(0, 0))
-    spec = header(blank, _fitted(blank, file_format, space), file_format, like.shape[0])
+    into = frame if file_format == "openexr" else frame.shown
+    if not (into == frame or frame.visible):
+        what = "the texture lies outside its display window, which is all that such a file holds"
+        raise problem(path, f"{what}; write OpenEXR")
+    check_size(path, into.shape[1], into.shape[0])
+    spec = header(blank, _fitted(blank, file_format, space), file_format, into)
     with encoder(path, file_format, spec) as sink:
-        yield TextureWriter(sink, file_format, space)
+        yield TextureWriter(sink, file_format, space, frame, into)
 
 
 def format_of(path: Path) -> str:
@@ -142,7 +179,7 @@ def _fitted(texture: Texture, file_format: str, wanted: Space | None) -> Texture
     if not same:
         if wanted is None and file_format == "openexr":
             space = sibling(space, False)
-        if wanted is None and file_format == "dpx" and isinstance(space, IccSpace):
+        if wanted is None and file_format == "dpx" and isinstance(space, CurveSpace):
             space = SRGB
         texture = _arranged(texture, _MOST_CHANNELS.get(file_format))
     if dtype == np.uint8 and file_format != "jpeg" and texture.space.encoded and not space.encoded:

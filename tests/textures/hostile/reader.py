@@ -250,10 +250,9 @@ def _serve(how: str) -> None:
 
     if how == "estimate":
         import cutis.apps.main
-        import cutis.inverse
         import cutis.jobs.estimate
 
-        cutis.inverse.load_model("default")  # imported, nothing run: a fork cannot take threads on
+        cutis.maps.load_model()  # imported, nothing run: a fork cannot take threads on
     read = _read if how == "read" else _estimate
     print("ready", file=answers, flush=True)
     for line in sys.stdin:

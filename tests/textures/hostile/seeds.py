@@ -396,10 +396,9 @@ def _psd(folder: Path) -> Iterator[Path]:
 
 
 def _maps(folder: Path) -> Iterator[Path]:
-    from dataclasses import replace
 
     from cutis.inverse.calibration import Calibration
-    from cutis.maps import SkinMaps, save_maps
+    from cutis.maps import save_maps, skin_of
     from cutis.optics import PARAMETERS
 
     y = np.linspace(0, 1, SIZE[0], dtype=np.float32)[:, None]
@@ -408,15 +407,12 @@ def _maps(folder: Path) -> Iterator[Path]:
                                 SIZE).astype(np.float32)
         for p in PARAMETERS
     }  # fmt: skip
-    skin = SkinMaps(
-        **values, mask=np.ones(SIZE, np.float32),
-        calibration=Calibration((1.1, 1.0, 0.9), "white", "A"),
+    skin = skin_of(
+        values, model="aliaga2022-exact", calibration=Calibration((1.1, 1.0, 0.9), "white", "A"),
         provenance={"source": "face.png", "source_sha256": "0" * 64, "source_colorspace": "auto"},
     )  # fmt: skip
     for name, kind in (("plain", "float"), ("half", "half")):
         save_maps(skin, folder / f"{name}.skin.exr", kind)
         yield folder / f"{name}.skin.exr"
-    edited = replace(skin, melanin=skin.melanin * np.float32(0.5), original=skin,
-                     edits=("melanin *0.5",), clamped=(0,))  # fmt: skip
-    save_maps(edited, folder / "edited.skin.exr")
+    save_maps(skin.multiply(melanin=0.5), folder / "edited.skin.exr")
     yield folder / "edited.skin.exr"

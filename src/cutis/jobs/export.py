@@ -1,0 +1,97 @@
+"""Edits and models for other programs: look-up tables and networks."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from cutis.colour import SRGB, Space
+from cutis.errors import CutisError
+from cutis.inverse import Calibration, Model
+from cutis.inverse.onnx_export import decoder_onnx, encoder_onnx
+from cutis.inverse.shader_export import decoder_glsl
+from cutis.inverse.shipped import networks
+from cutis.jobs.files import check_outputs
+from cutis.jobs.job import digest_of
+from cutis.luts import export_lut
+from cutis.maps import Edit, MapsFile, load_model
+from cutis.maps.estimating import Progress, nobody
+from cutis.textures import replacing, sweep
+
+LUTS = (".cube", ".clf")
+NETWORKS = (".onnx", ".glsl")
+"""Extensions that a model's networks are written in."""
+
+
+@dataclass(frozen=True)
+class ExportJob:
+    """An edit as NAME.cube or NAME.clf, or networks as decoder.onnx, encoder.onnx, decoder.glsl.
+
+    A LUT has `size` nodes along a side and is for textures stored in `space`; `maps` is a file
+    whose calibration and model it takes over, `model` another model; networks are those of
+    aliaga2022, or of a .safetensors file.
+    """
+
+    output: Path = field(metadata={"result": False})
+    edits: tuple[Edit, ...] = ()
+    amount: float = 1.0
+    size: int = 65
+    space: Space = SRGB
+    maps: Path | None = None
+    model: Model | None = None
+
+    def __post_init__(self) -> None:
+        kind = self.output.suffix.lower()
+        if kind in NETWORKS and (self.edits or self.maps is not None):
+            raise CutisError(f"{self.output} is for networks; edits are written as .cube or .clf")
+        if kind not in (*LUTS, *NETWORKS):
+            raise CutisError(
+                f"{self.output}: a LUT is written as .cube or .clf, networks as .onnx or .glsl; "
+                "end its name so"
+            )
+        if kind in LUTS and not self.edits:
+            raise CutisError(
+                "nothing to export: give --preset or a parameter flag such as --melanin x2"
+            )
+
+    def digest(self) -> str:
+        """SHA-256 of all that the result depends on."""
+        return digest_of(self)
+
+    def run(self, progress: Progress = nobody) -> str:
+        """Writes the file; returns what it is, in a few words."""
+        check_outputs([self.output], {"the file of maps": self.maps})
+        sweep(self.output.parent)
+        progress(0, 1, f"writing {self.output.name}")
+        kind = self.output.suffix.lower()
+        said = self._networks() if kind in NETWORKS else self._lut()
+        progress(1, 1, f"writing {self.output.name}")
+        return said
+
+    def _lut(self) -> str:
+        calibration, model = Calibration(), self.model
+        if self.maps is not None:
+            with MapsFile(self.maps) as file:
+                calibration = file.header.calibration
+                model = model or file.made_by.load()
+        title = export_lut(
+            self.output, self.edits, self.space, self.size,
+            model=model or load_model(), calibration=calibration, amount=self.amount,
+        )  # fmt: skip
+        return f"{title}, {self.size} nodes a side"
+
+    def _networks(self) -> str:
+        model = self.model or load_model("aliaga2022")
+        pair = networks(model.name)
+        half = "encoder" if "encoder" in self.output.stem.lower() else "decoder"
+        name = Path(model.name).name
+        if self.output.suffix.lower() == ".onnx":
+            content = encoder_onnx(pair) if half == "encoder" else decoder_onnx(pair)
+        elif half == "encoder":
+            raise CutisError(
+                f"{self.output}: only the decoder is written as GLSL; the encoder as .onnx"
+            )
+        else:
+            text = decoder_glsl(pair.decoder, f"The decoder of {name}, from cutis.")
+            content = text.encode("utf-8")
+        with replacing(self.output) as temporary:
+            temporary.write_bytes(content)
+        return f"{half} of {name}"

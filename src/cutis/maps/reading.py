@@ -1,0 +1,222 @@
+"""Skin maps out of the files that `writing` makes, and out of those of earlier versions."""
+
+import contextlib
+import json
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cutis.errors import CutisError
+from cutis.inverse.calibration import Calibration
+from cutis.maps.changes import Change, Tile
+from cutis.maps.defaults import OLD_DEFAULT
+from cutis.maps.plain import Map, Maps, Place
+from cutis.maps.skin_maps import EditedEstimate, Estimate, MadeBy, SkinMaps
+from cutis.maps.source import find_source, open_source, source_note
+from cutis.maps.trust import CONFIDENCE, SIGMA, stored_sigma
+from cutis.maps.writing import ORIGINAL, PREFIX, Header
+from cutis.optics import NAMES, PARAMETERS, RARE, RARE_NAMES, Parameter, parameter
+from cutis.textures.channels import ChannelFile
+from cutis.textures.closing import Closing
+
+LARGEST = 1e3
+"""Of gains, and of the numbers that turn the RGB of one light into that of another."""
+
+
+class MapsFile(Closing):
+    """An open file of skin maps: what its header says, and its maps some rows at a time.
+
+    `header` is a `Header`. Close it, or use it in a with block. Raises CutisError where channels
+    are missing, out of range, or the header is damaged.
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        self.path = Path(path)
+        if self.path.is_file() and self.path.suffix.lower() != ".exr":
+            raise CutisError(
+                f"{self.path.name} is not a file of skin maps (NAME.skin.exr); "
+                "make one from a texture with: cutis estimate"
+            )
+        self._file = ChannelFile(path)
+        try:
+            self._check_channels()
+            self.shape = self._file.shape
+            self.header = self._read_header()
+        except BaseException:
+            self.close()
+            raise
+
+    def _check_channels(self) -> None:
+        missing = [name for name in NAMES if name not in self._file.names]
+        if missing:
+            raise CutisError(
+                f"{self.path.name}: not a file of skin maps (no channel {', '.join(missing)}); "
+                "make one with: cutis estimate"
+            )
+
+    def _read_header(self) -> Header:
+        there, metadata = self._file.names, self._file.metadata
+        notes = {k[len(PREFIX) :]: str(v) for k, v in metadata.items() if k.startswith(PREFIX)}
+        try:
+            calibration = _calibration(notes.pop("calibration", "{}"))
+            state = json.loads(notes.pop("survey", "{}"))
+            edits = [
+                (str(edit), int(clamped)) for edit, clamped in json.loads(notes.pop("edits", "[]"))
+            ]
+            if not isinstance(state, dict):
+                raise TypeError("a survey is an object")
+        except (
+            ValueError, KeyError, TypeError, OverflowError, RecursionError, AttributeError,
+            np.linalg.LinAlgError,
+        ) as error:  # fmt: skip
+            raise CutisError(f"{self.path.name}: its header is damaged; estimate again") from error
+        model, digest = notes.pop("model", "default"), notes.pop("model_digest", "")
+        rare = tuple(name for name in RARE_NAMES if name in there)
+        known = (*NAMES, *rare)
+        provenance = {k: v for k, v in notes.items() if k not in (*NAMES, *RARE_NAMES)}
+        config = provenance.get("source_ocio")
+        if config and "://" not in config:
+            provenance["source_ocio"] = os.path.join(self.path.resolve().parent, config)
+        return Header(
+            OLD_DEFAULT if model == "default" else model, digest, calibration, provenance, state,
+            edits=tuple(edit for edit, _ in edits),
+            clamped=tuple(clamped for _, clamped in edits),
+            sigmas=tuple(name for name in known if name + SIGMA in there),
+            confident=CONFIDENCE in there,
+            changed=tuple(name for name in known if ORIGINAL + name in there),
+            rare=rare,
+        )  # fmt: skip
+
+    @property
+    def provenance(self) -> Mapping[str, str]:
+        """Where the maps are from."""
+        return self.header.provenance
+
+    @property
+    def made_by(self) -> MadeBy:
+        """The model, whether or not it is here."""
+        return MadeBy(self.header.model, self.header.digest)
+
+    def close(self) -> None:
+        """Lets go of the file."""
+        self._file.close()
+
+    def bands(self) -> Iterator[slice]:
+        """Slices of rows that cover the maps, of about half a million texels each."""
+        return self._file.bands()
+
+    def rows(self, rows: slice, trust: bool = True) -> Estimate | EditedEstimate:
+        """Maps of some rows, without their capture; σ and confidence only if `trust`."""
+        header, channels = self.header, self._file.rows(rows)
+        mask = channels.get("mask", np.ones(channels["melanin"].shape, dtype=np.float32))
+        if not (mask.min(initial=0) >= 0 and mask.max(initial=0) <= 1):  # NaN fails too
+            raise self.no_mask()
+        names = (*NAMES, *header.rare)
+        known = [p for p in (*PARAMETERS, *RARE) if p.name in names]
+        place = Place(rows.indices(self.shape[0])[0], self.shape)
+        stored = {p.name: _checked(self.path, channels[p.name], p, mask) for p in known}
+        inside = mask > 0
+        spread = {
+            name: np.where(inside, stored_sigma(channels[name + SIGMA], parameter(name)), 0)
+            for name in (header.sigmas if trust else ())
+        }
+        sure = None
+        if trust and header.confident:
+            sure = np.where(inside, np.clip(np.nan_to_num(channels[CONFIDENCE]), 0, 1), 0)
+        now = Maps(stored, mask, place)
+        rest: dict[str, Any] = {
+            "by": self.made_by, "calibrated": header.calibration, "sure": sure,
+            "notes": header.provenance, "state": header.state,
+        }  # fmt: skip
+        if not (header.edits or header.changed):
+            return Estimate(now, spread=spread, **rest)
+        before = {
+            p.name: _checked(self.path, channels[ORIGINAL + p.name], p, mask)
+            for p in known
+            if p.name in header.changed
+        }
+        return EditedEstimate(
+            Estimate(now.with_values(before), **rest), (), Tile(now, spread, header.clamped),
+            header.edits,
+        )  # fmt: skip
+
+    def edited(self, rows: slice, changes: Sequence[Change], trust: bool = True) -> SkinMaps:
+        """Maps of some rows with changes of the whole texture applied; see `rows`."""
+        start, stop, _ = rows.indices(self.shape[0])
+        reach = sum(change.reach for change in changes)
+        wide = slice(max(0, start - reach), min(self.shape[0], stop + reach))
+        part: SkinMaps = self.rows(wide, trust)
+        for change in changes:
+            part = part.changed_by(change.rows(wide))
+        return part.rows(slice(start - wide.start, stop - wide.start)) if changes else part
+
+    def no_mask(self) -> CutisError:
+        """What to raise when the mask is empty or broken."""
+        return CutisError(
+            f"{self.path.name}: its mask is empty or not within 0 to 1; estimate again"
+        )
+
+
+def load_maps(path: str | os.PathLike[str]) -> Estimate | EditedEstimate:
+    """Reads what `save_maps` wrote; CutisError when channels are missing or out of range."""
+    with MapsFile(path) as file:
+        skin = file.rows(slice(None))
+        if not skin.mask.max() > 0:
+            raise file.no_mask()
+    return skin
+
+
+def load_skin(
+    path: str | os.PathLike[str], source: str | os.PathLike[str] | None = None
+) -> SkinMaps:
+    """Skin maps with their capture: `source`, or the one that their header names if it is there.
+
+    With its capture, `albedo()` gives the capture with the edits in it; without, the model alone.
+    Raises CutisError when `source` is missing or is not the capture that the maps were made from.
+    """
+    path = Path(path)
+    skin = load_maps(path)
+    try:
+        capture = find_source(skin.provenance, path, None if source is None else Path(source))
+    except CutisError:
+        if source is not None:
+            raise
+        return skin
+    with open_source(skin.provenance, capture) as file:
+        return skin.with_capture(file.read().linear(), source_note(file))
+
+
+def _calibration(text: str) -> Calibration:
+    stored = {"gains": [1, 1, 1], "origin": "none", **json.loads(text)}
+    red, green, blue = (float(g) for g in stored["gains"])
+    if not all(1 / LARGEST < gain < LARGEST for gain in (red, green, blue)):
+        raise ValueError("gains must be positive numbers of a camera")
+    light, conversion = str(stored.get("light", "D65")), stored.get("conversion")
+    if conversion is not None:
+        conversion = tuple(tuple(float(v) for v in row) for row in conversion)
+        matrix = np.array(conversion)
+        with contextlib.suppress(FloatingPointError), np.errstate(all="ignore"):
+            back = np.linalg.inv(matrix) @ matrix
+        # 1e308 has an inverse, but nothing that goes through it and back is what it was
+        if matrix.shape != (3, 3) or not np.allclose(back, np.eye(3), atol=1e-3):
+            raise ValueError("the conversion of light must be invertible")
+        if np.abs(matrix).max() > LARGEST:
+            raise ValueError("the conversion of light is none between lights")
+    return Calibration((red, green, blue), str(stored["origin"]), light, conversion)
+
+
+def _checked(path: Path, values: Map, known: Parameter, mask: Map) -> Map:
+    """A stored map, 0 off the mask; CutisError where it is out of range."""
+    inside = mask > 0
+    slack = 1e-3 * (known.high - known.low)  # what storing as half may add
+    bad = ~((values >= known.low - slack) & (values <= known.high + slack)) & inside
+    if bad.any():
+        raise CutisError(
+            f"{path.name}: {int(bad.sum())} texels of {known.name} are outside "
+            f"{known.low:g} to {known.high:g} {known.unit}; estimate again"
+        )
+    low, high = np.float32(known.low), np.float32(known.high)
+    return np.where(inside, np.clip(values, low, high), np.float32(0))
