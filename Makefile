@@ -44,7 +44,7 @@ test-long: setup ## the tests that `make test` leaves out
 fuzz: setup ## property tests on ROUNDS of new cases, then FILES damaged files
 	for round in $$(seq $(ROUNDS)); do \
 	  CUTIS_PROPERTIES=new $(PYTEST) $(PARALLEL) -m property || exit; done
-	$(BIN)/python -m studies.fuzz_textures --count $(FILES) --seed $$(date +%s)
+	$(BIN)/python -m studies.fuzz --count $(FILES) --seed $$(date +%s)
 
 lint: $(FULL) ## code style
 	$(BIN)/ruff check .

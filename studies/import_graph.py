@@ -4,8 +4,8 @@
 
 A name taken from a package counts as taken from the module that defines it, so that a change of one
 module of a room does not reach all that use another. Imports inside functions count like others,
-and so do names of modules in strings, since tests run code in other processes. Data files count as
-imported by the modules that name their folder or file.
+as do names of modules in strings, since tests run code in other processes; imports for types alone
+do not. Data files count as imported by the modules that name their folder or file.
 """
 
 import ast
@@ -39,7 +39,7 @@ class Module:
 
     def wanted(self) -> Iterator[tuple[str, str | None]]:
         """(module, name taken from it) of each import; None where it is taken whole."""
-        for node in ast.walk(self.tree):
+        for node in _run(self.tree):
             if isinstance(node, ast.Import):
                 yield from ((alias.name, None) for alias in node.names)
             elif isinstance(node, ast.ImportFrom):
@@ -170,6 +170,14 @@ def _modules(root: Path) -> Iterator[tuple[str, Module]]:
             parts = [top, *path.relative_to(root / folder).with_suffix("").parts]
             name = ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
             yield name, Module(name, path, ast.parse(path.read_text("utf-8"), str(path)))
+
+
+def _run(tree: ast.AST) -> Iterator[ast.AST]:
+    """Every node but those below `if TYPE_CHECKING`."""
+    yield tree
+    for node in ast.iter_child_nodes(tree):
+        if not (isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"):
+            yield from _run(node)
 
 
 def _arguments(tree: ast.AST) -> set[str]:

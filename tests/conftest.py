@@ -266,7 +266,8 @@ def process():
 @pytest.fixture(scope="session")
 def estimated(write_face, face_mask, tmp_path_factory) -> Path:
     """out/ of `cutis estimate face.png`, the capture beside it; not to be written to."""
-    from cutis.jobs.estimate import CaptureFiles, EstimateJob
+    from cutis.jobs.estimate import EstimateJob
+    from cutis.jobs.outcome import CaptureFiles
 
     folder = tmp_path_factory.mktemp("estimated")
     face = write_face(folder)
@@ -303,8 +304,8 @@ def _one_line():
 
 
 @pytest.fixture
-def scheduler(tmp_path):
-    """Address of a Dask scheduler of its own."""
+def scheduler_process(tmp_path):
+    """A Dask scheduler of its own, as a process; its address is in scheduler.json."""
     where = tmp_path / "scheduler.json"
     process = subprocess.Popen(
         [sys.executable, "-m", "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port",
@@ -316,10 +317,16 @@ def scheduler(tmp_path):
         while not (where.is_file() and where.stat().st_size > 0):
             assert time.monotonic() < end, "no scheduler"
             time.sleep(0.01)
-        yield json.loads(where.read_text())["address"]
+        yield process
     finally:
         process.kill()
         process.wait()
+
+
+@pytest.fixture
+def scheduler(scheduler_process, tmp_path) -> str:
+    """Address of a Dask scheduler of its own."""
+    return str(json.loads((tmp_path / "scheduler.json").read_text())["address"])
 
 
 @pytest.fixture

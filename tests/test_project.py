@@ -4,13 +4,17 @@ import ast
 import dataclasses
 import importlib
 import inspect
+import os
 import re
 import subprocess
 import sys
 from pathlib import Path
 from typing import Literal
 
+import hypothesis
 import pytest
+
+from studies.import_graph import Graph, circle
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "src" / "cutis"
@@ -160,7 +164,7 @@ def test_tables_name_source_and_unit(csv):
 
 def test_import_is_light():
     """What takes seconds to import waits until a function needs it."""
-    names = "torch colour matplotlib scipy.spatial numba"
+    names = "torch colour jinja2 matplotlib scipy.spatial numba"
     code = (
         "import sys, cutis\n"
         "assert cutis.__file__, 'a namespace, not the package'\n"
@@ -177,3 +181,71 @@ def test_examples_stay_out_of_the_package(capture1):
         assert path.is_file()
     assert "MIT License" in (ROOT / "examples/BioSkin-MIT.txt").read_text("utf-8")
     assert not [p for p in PACKAGE.rglob("*") if "capture" in p.name]
+
+
+def test_no_modules_import_each_other_round_about():
+    """Not inside functions either."""
+    assert " → ".join(circle(Graph(ROOT).imports)) == ""
+
+
+def test_rooms_are_of_a_size():
+    """The largest holds at most 15 % of the lines, the command line at most 10 %."""
+    lines = {room: 0 for room in rooms()}
+    for path in PACKAGE.rglob("*.py"):
+        room = path.relative_to(PACKAGE).parts[0]
+        if room in lines:
+            lines[room] += len(path.read_text("utf-8").splitlines())
+    shares = {room: count / sum(lines.values()) for room, count in lines.items()}
+    assert {room: f"{share:.1%}" for room, share in shares.items() if share > 0.15} == {}
+    assert shares["apps"] <= 0.10
+
+
+UNSEEDED = {"default_rng", "Random", "SystemRandom", "RandomState", "token_hex", "uuid4"}
+"""Makers of random numbers that are others in every run where nothing is given to them."""
+
+
+def unseeded(source: str) -> list[int]:
+    """Lines that draw random numbers which are others in every run."""
+    found = []
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute | ast.Name):
+            name = node.func.attr if isinstance(node.func, ast.Attribute) else node.func.id
+            whole = ast.unparse(node.func)
+            global_one = re.fullmatch(r"np\.random\.(?!default_rng|Generator)\w+", whole)
+            if (name in UNSEEDED and not node.args and not node.keywords) or global_one:
+                found.append(node.lineno)
+            if re.fullmatch(r"random\.(random|randint|choice|shuffle|uniform|sample)", whole) and (
+                "import random\n" in source
+            ):
+                found.append(node.lineno)
+    return found
+
+
+def test_tests_draw_the_same_numbers_every_time():
+    found = [
+        f"{path.relative_to(ROOT)}:{line}"
+        for folder in ("tests", "studies", "benchmarks")
+        for path in sorted((ROOT / folder).rglob("*.py"))
+        for line in unseeded(path.read_text("utf-8"))
+    ]
+    assert found == []
+    if "CUTIS_PROPERTIES" not in os.environ:
+        assert hypothesis.settings.default.derandomize
+
+
+@pytest.mark.parametrize(
+    ("source", "count"),
+    [
+        ("np.random.default_rng(0)", 0),
+        ("np.random.default_rng()", 1),
+        ("default_rng()", 1),
+        ("np.random.rand(3)", 1),
+        ("Random(seed)", 0),
+        ("Random()", 1),
+        ("import random\nrandom.choice([1, 2])", 1),
+        ("random = draw(randoms)\nrandom.choice([1, 2])", 0),
+        ("uuid.uuid4()", 1),
+    ],
+)
+def test_numbers_without_a_seed_are_seen(source, count):
+    assert len(unseeded(source)) == count

@@ -27,7 +27,7 @@ ROOMS = (
     "apps",
 )
 """A room may import itself, those before it and SHARED."""
-SHARED = {"errors", "moved"}
+SHARED = {"arrays", "errors", "moved"}
 """Modules of the package's root that every room may import; they import no room."""
 SLOW = {
     "torch": {"inverse.training"},

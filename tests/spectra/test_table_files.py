@@ -252,6 +252,7 @@ def test_tables_as_instruments_write_them(tmp_path, name):
         ),
         (columns_of("Wavelength (cm-1)"), "no spectra in columns"),
         (cgats().replace("END_DATA\n", ""), "CGATS whose DATA is not whole"),
+        ("BEGIN_DATA_FORMAT\nEND_DATA_FORMAT\n" + cgats(), "CGATS without fields"),
         ('a,"b\n' + rows_of(), "line 1: is no CSV"),
         (columns_of().replace("400,", "red,"), "line 2: row 1, column wavelength_nm is 'red'"),
         (columns_of().encode("utf-16").decode("latin-1"), "no CSV file in UTF-8"),

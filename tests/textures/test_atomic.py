@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from cutis.errors import CutisError
-from cutis.textures import check_outputs, replacing, sweep
+from cutis.textures import check_writable, replacing, sweep
 
 
 def test_the_file_appears_whole(tmp_path):
@@ -106,12 +106,12 @@ def test_names_as_long_as_names_may_be(tmp_path, letter, one_line):
     longest = os.pathconf(tmp_path, "PC_NAME_MAX")
     count = (longest - 4) // len(letter.encode())
     path = tmp_path / f"{letter * count}.txt"
-    check_outputs([path])
+    check_writable(path)
     with replacing(path) as temporary:
         temporary.write_text("x")
     assert path.read_text() == "x"
     path = tmp_path / f"{letter * (count + 1)}.txt"
-    for action in (lambda: check_outputs([path]), lambda: replacing(path).__enter__()):
+    for action in (lambda: check_writable(path), lambda: replacing(path).__enter__()):
         with pytest.raises(
             CutisError, match=f"longer than {longest} bytes; choose a sho"
         ) as caught:
@@ -123,7 +123,7 @@ def test_names_as_long_as_names_may_be(tmp_path, letter, one_line):
 def test_a_path_longer_than_paths_may_be(tmp_path):
     path = tmp_path.joinpath(*["folder"] * 700, "a.txt")
     with pytest.raises(CutisError, match=r"does not exist|path is longer|too long"):
-        check_outputs([path])
+        check_writable(path)
 
 
 def test_what_is_no_file_is_never_replaced(tmp_path, one_line):
@@ -134,7 +134,7 @@ def test_what_is_no_file_is_never_replaced(tmp_path, one_line):
     before = sorted(tmp_path.iterdir())
     for path, what in [(pipe, "is a pipe"), (link, "is a pipe"), (null, "is a device"),
                        (Path("/dev/null"), "is a device")]:  # fmt: skip
-        for action in (lambda one: check_outputs([one]), lambda one: replacing(one).__enter__()):
+        for action in (lambda one: check_writable(one), lambda one: replacing(one).__enter__()):
             with pytest.raises(CutisError, match=f"{what}.*; give the name of a file") as caught:
                 action(path)
             one_line(caught, path)

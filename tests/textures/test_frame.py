@@ -199,3 +199,20 @@ def test_placed_against_numpy(random):
         found = placed(lambda rows: values[rows], theirs, ours, slice(1, 6))
         seen = on_display(values, left, top)
         assert np.array_equal(found, seen[2:7, 2:6])
+
+
+@pytest.mark.parametrize("name", WINDOWS)
+def test_what_is_shown_of_it(tmp_path, name):
+    """All rows of the picture, as renderers see it."""
+    from cutis.textures import TextureFile
+
+    (x, y), values = window(name)
+    path = cropped(tmp_path, name, (5, -6))
+    seen = on_display(values, x, y)
+    with TextureFile(path, shown=True) as file:
+        assert file.frame == whole_frame(SHOWN)
+        for rows in (slice(None), slice(2, 4), slice(9, 10), slice(3, 3)):
+            assert np.array_equal(file.rows(rows).pixels, seen[rows])
+    with ChannelFile(path, shown=True) as channels:
+        assert channels.shape == SHOWN
+        assert np.array_equal(channels.rows(slice(1, 8))["G"], seen[1:8, :, 1])

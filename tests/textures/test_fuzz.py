@@ -1,6 +1,6 @@
 """Damaged, odd and absurd files, read in a process that may die of them.
 
-`studies/fuzz_textures.py` does the same to tens of thousands.
+`studies/fuzz.py` does the same to tens of thousands.
 """
 
 import os

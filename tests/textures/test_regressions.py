@@ -1,6 +1,6 @@
 """Files that once went wrong: that crashed, printed, took memory, or came as what they are not.
 
-`studies/fuzz_textures.py` found most of them; what it finds next belongs here too. The first part
+`studies/fuzz.py` found most of them; what it finds next belongs here too. The first part
 of a name is the format.
 """
 

@@ -43,7 +43,7 @@ def test_texels_are_those_that_viewers_show(tmp_path, kind, orientation, order):
     path = turned(tmp_path / f"a.{kind}", orientation, order)
     one = read_texture(path)
     assert np.array_equal(one.pixels, shown(path))
-    assert one.orientation == orientation
+    assert (one.turned, one.orientation) == (orientation, "auto")
     as_it_is = read_texture(path, orientation="ignore")
     assert np.array_equal(as_it_is.pixels, stored(path))
     with TextureFile(path) as file, TextureFile(path, orientation="ignore") as other:

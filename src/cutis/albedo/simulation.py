@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from cutis.errors import CutisError
 from cutis.optics import ALIAGA2022, PARAMETERS, WAVELENGTHS, Tissue, from_coordinates
+from cutis.optics.absorbers import LAYERS
 from cutis.transport import walk_absorptions, walk_stacks
 from cutis.transport.monte_carlo import PHOTONS, check_photons
 
@@ -33,7 +34,8 @@ class Walks:
 
     def __post_init__(self) -> None:
         check_photons(self.photons, self.seed)
-        if self.tissue.parameters != PARAMETERS:
+        self.tissue.check()
+        if self.tissue.parameters[: len(PARAMETERS)] != PARAMETERS:
             raise CutisError(
                 f"only tissues with the five free parameters are simulated, not {self.tissue.name}"
             )
@@ -41,15 +43,16 @@ class Walks:
 
 @dataclass(frozen=True, eq=False)
 class SkinSimulation:
-    """(n, 5) skins, each at the 41 bands, in batches of a few skins."""
+    """(n, 5) skins, or (n, p) in the parameters of the tissue, at the 41 bands, a few a batch."""
 
     skins: Array
     walks: Walks
 
     def __post_init__(self) -> None:
-        if self.skins.ndim != 2 or self.skins.shape[1] != len(PARAMETERS) or not len(self.skins):
-            raise CutisError(f"skins must be (n, {len(PARAMETERS)}), not {self.skins.shape}")
-        for known, values in zip(PARAMETERS, self.skins.T, strict=True):
+        every = self.walks.tissue.parameters
+        if self.skins.ndim != 2 or self.skins.shape[1] != len(every) or not len(self.skins):
+            raise CutisError(f"skins must be (n, {len(every)}), not {self.skins.shape}")
+        for known, values in zip(every, self.skins.T, strict=True):
             known.check(float(values.min()))
             known.check(float(values.max()))
 
@@ -73,17 +76,13 @@ class SkinSimulation:
         first = batch * self.size
         skins = self.skins[first : first + self.size]
         tissue, lam = self.walks.tissue, WAVELENGTHS
-        melanin, blood, thickness, eumelanin, oxygenation = skins.T
+        values = {p.name: skins[:, i] for i, p in enumerate(tissue.parameters)}
         absorption = np.stack(
-            [
-                tissue.epidermis_absorption(melanin, eumelanin, lam),
-                tissue.dermis_absorption(blood, oxygenation, lam),
-            ],
-            axis=-1,
+            [tissue.absorption(layer, values, lam) for layer in LAYERS], axis=-1
         ).reshape(-1, 2)
         above = np.tile(tissue.scattering(lam), len(skins))
-        below = np.broadcast_to(tissue.scattering_below(lam, eumelanin), (len(skins), BANDS))
-        depth = np.repeat(thickness * 1e-4, BANDS)
+        below = np.broadcast_to(tissue.scattering_below(lam, values["eumelanin"]), (len(skins), BANDS))
+        depth = np.repeat(values["thickness"] * 1e-4, BANDS)
         found = walk_stacks(
             absorption,
             np.stack([above, below.ravel()], axis=-1),

@@ -26,8 +26,9 @@ def demo(
     from cutis.apps.estimate_words import say_one
     from cutis.errors import CutisError
     from cutis.jobs.edit import EditJob
-    from cutis.jobs.estimate import CaptureFiles, EstimateJob
+    from cutis.jobs.estimate import EstimateJob
     from cutis.jobs.job import part
+    from cutis.jobs.outcome import CaptureFiles
     from cutis.maps import presets
     from cutis.report.page import write_report
     from cutis.report.previews import previews_of, reduced

@@ -55,6 +55,8 @@ def edit(
     with bar(quiet) as progress:
         found = job.run(progress)
     for one in () if quiet else found:
+        for note in one.notes:
+            out.say(note)
         for text, clamped in zip(one.edits, one.clamped, strict=True):
             share = f" ({100 * clamped / max(one.inside, 1):.0f} % of the mask)"
             out.say(text + (f", {clamped:,} texels clamped to range{share}" if clamped else ""))

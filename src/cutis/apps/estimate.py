@@ -10,7 +10,8 @@ from cutis.apps import options
 from cutis.errors import CutisError
 
 if TYPE_CHECKING:
-    from cutis.jobs.estimate import Estimated, EstimateJob
+    from cutis.jobs.estimate import EstimateJob
+    from cutis.jobs.outcome import Estimated
 
 Faces = Annotated[
     list[str],
@@ -48,6 +49,7 @@ def estimate(
         Path | None,
         typer.Option(help="Picture in flat colours, one for each region to report on."),
     ] = None,
+    orientation: options.Turning = options.Turn.AUTO,
     udim: Annotated[bool, typer.Option("--udim", help="FACE is one tile of a UDIM set.")] = False,
     sequence: Annotated[
         bool, typer.Option("--sequence", help="All are of one person: share one calibration.")
@@ -72,8 +74,9 @@ def estimate(
 
     from cutis.apps import estimate_words as words
     from cutis.apps.console import bar
-    from cutis.jobs.estimate import CaptureFiles, EstimateJob
+    from cutis.jobs.estimate import EstimateJob
     from cutis.jobs.inputs import capture_sets, companion
+    from cutis.jobs.outcome import CaptureFiles
     from cutis.jobs.runners import cluster as on_cluster
     from cutis.jobs.runners import here, processes
     from cutis.jobs.sets import estimate_sets
@@ -82,10 +85,12 @@ def estimate(
         (CaptureFiles(Path()),), output, options.white_gains(white),
         options.exposure_gain(exposure), options.light_of(illuminant),
         options.model_of(model, method, device), options.source_space(colorspace, ocio),
-        options.space_of(output_colorspace, ocio), half, not no_sigma, report, again,
+        options.space_of(output_colorspace, ocio), half, not no_sigma, report,
+        orientation.value, again,
     )  # fmt: skip
     sets = []
-    for captures in capture_sets(faces, udim, sequence):
+    doubts: list[str] = []
+    for captures in capture_sets(faces, udim, sequence, doubts.append):
         files = (CaptureFiles(f, companion(mask, f), companion(regions, f)) for f in captures)
         sets.append(replace(like, captures=tuple(files)))
     runner = here if cluster is None and jobs == 1 else processes(jobs)
@@ -94,7 +99,7 @@ def estimate(
     with bar(quiet) as progress:
         found = list(estimate_sets(sets, runner, progress))
     if not quiet:
-        words.say(sets, found)
+        words.say(sets, found, doubts)
     _fail(sets, found)
 
 

@@ -8,13 +8,19 @@ from cutis.apps.console import out, print_statistics
 from cutis.report import summary
 
 if TYPE_CHECKING:
-    from cutis.jobs.estimate import Estimated, EstimateJob
+    from cutis.jobs.estimate import EstimateJob
+    from cutis.jobs.outcome import Estimated
     from cutis.report import Report
 
 
-def say(sets: "Sequence[EstimateJob]", found: "Sequence[Estimated]") -> None:
-    """Prints what was found: all of one capture, a line for each of many."""
+def say(
+    sets: "Sequence[EstimateJob]", found: "Sequence[Estimated]", doubts: Sequence[str] = ()
+) -> None:
+    """Prints what was found: all of one capture, a line for each of many; `doubts` come first."""
     from cutis.jobs.inputs import gaps, odd_ones
+
+    for doubt in doubts:
+        out.say(doubt)
 
     for job in sets:
         captures = tuple(one.face for one in job.captures)
@@ -42,6 +48,8 @@ def _say_many(sets: "Sequence[EstimateJob]", found: "Sequence[Estimated]") -> No
     for outcome in new:
         assert outcome.report is not None
         out.say(f"{outcome.face.name}: {summary.line(outcome.report)}")
+        for note in outcome.report.notes:
+            out.say(f"{outcome.face.name}: {note}")
     skipped = sum(outcome.there for outcome in found)
     left = f", {skipped} were there already" if skipped else ""
     total = sum(len(job.captures) for job in sets)

@@ -4,7 +4,7 @@ import os
 import signal
 import sys
 import threading
-from typing import Annotated, NoReturn
+from typing import Annotated, Any, NoReturn
 
 import typer
 
@@ -73,10 +73,11 @@ def main() -> None:
         if hasattr(stream, "reconfigure"):  # Δ and × do not fit every terminal
             stream.reconfigure(errors="replace")
     code: int | None = 0
+    before: dict[int, Any] = {}
     try:
         if sys.stdout is None:
             raise CutisError("standard output is closed, so that nothing can be said; open it")
-        _end_like_interrupts()
+        before = _end_like_interrupts()
         arguments = None if sys.argv[1:] else ["--help"]
         code = app(arguments, prog_name="cutis", standalone_mode=False)
         sys.stdout.flush()
@@ -101,12 +102,15 @@ def main() -> None:
         if os.environ.get("CUTIS_DEBUG"):
             raise
         _fail(f"internal error, {type(error).__name__}: {error}; CUTIS_DEBUG=1 shows where", 70)
+    finally:
+        for number, how in before.items():
+            signal.signal(number, how)
     if code == INTERRUPTED:
         _fail("interrupted; files already written are whole", INTERRUPTED)
     raise SystemExit(code)
 
 
-class _Ended(KeyboardInterrupt):
+class _Ended(BaseException):
     """A signal that asked the process to end, which it does as for Ctrl-C."""
 
     def __init__(self, number: int) -> None:
@@ -114,8 +118,12 @@ class _Ended(KeyboardInterrupt):
         self.number = number
 
 
-def _end_like_interrupts() -> None:
-    """What a system or a closed terminal sends ends the work as Ctrl-C does: cleaned up."""
+def _end_like_interrupts() -> dict[int, Any]:
+    """What a system or a closed terminal sends ends the work as Ctrl-C does: cleaned up.
+
+    Returns what was done on these signals before.
+    """
+    before: dict[int, Any] = {}
 
     def end(number: int, _: object) -> NoReturn:
         signal.signal(number, signal.SIG_IGN)  # asked once is enough
@@ -124,7 +132,9 @@ def _end_like_interrupts() -> None:
     if threading.current_thread() is threading.main_thread():
         for name in ("SIGTERM", "SIGHUP"):
             if hasattr(signal, name) and signal.getsignal(getattr(signal, name)) is signal.SIG_DFL:
-                signal.signal(getattr(signal, name), end)
+                number = getattr(signal, name)
+                before[number] = signal.signal(number, end)
+    return before
 
 
 def _fail(message: str, code: int = 1) -> NoReturn:

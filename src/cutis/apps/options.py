@@ -3,6 +3,7 @@
 import functools
 import inspect
 from collections.abc import Callable, Mapping, Sequence
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -89,6 +90,23 @@ Ocio = Annotated[
     str | None,
     typer.Option(
         "--ocio", help="OpenColorIO configuration; by default $OCIO, else the ACES studio one."
+    ),
+]
+
+
+class Turn(StrEnum):
+    """What becomes of orientation tags."""
+
+    AUTO = "auto"
+    IGNORE = "ignore"
+
+
+Turning = Annotated[
+    Turn,
+    typer.Option(
+        "--orientation",
+        help="auto turns pictures as their orientation tag says and viewers show them; ignore "
+        "keeps the order as stored, for tags that are wrong and meshes that know none.",
     ),
 ]
 

@@ -58,6 +58,7 @@ def render(
     anisotropy: Annotated[
         float, typer.Option(help="g of the walk, 0 to 0.9; lengths follow by similarity.")
     ] = 0.0,
+    orientation: options.Turning = options.Turn.AUTO,
     normal: Annotated[Path | None, typer.Option(help="Tangent-space normal map.")] = None,
     roughness: Annotated[
         Path | None, typer.Option(help="Grey roughness map; 0.5 is the default skin's.")
@@ -130,7 +131,7 @@ def render(
     )  # fmt: skip
     subject = Subject(
         shown, scene, options.edits(preset, changes), amount, mask, source, model_only,
-        options.source_space(colorspace, ocio), radius, head,
+        options.source_space(colorspace, ocio), radius, head, orientation.value,
     )  # fmt: skip
     if export is not None:
         with bar(quiet) as progress:
@@ -143,7 +144,7 @@ def render(
         job = RenderJob(subject, output or Path(name), sequence, again, blender)
         with bar(quiet) as progress:
             done = job.run(progress)
-        credits, said = done.credits, []
+        credits, said = done.credits, list(done.notes)
         if done.there:
             said.append(f"{len(done.there)} pictures were there already")
         if done.animation is not None:

@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cutis.albedo.rare import rare_ratio
-from cutis.errors import CutisError
 from cutis.optics import NAMES, PARAMETERS, Tissue
 
 Map: TypeAlias = NDArray[np.float32]
@@ -117,17 +116,6 @@ class Model:
 
     def __repr__(self) -> str:
         return f"<cutis model {self.name}, tissue {self.tissue.name}, {self.digest[:12]}>"
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        """Travels as its recipe; what arrives is checked to be the same."""
-        if self.recipe is None:
-            raise CutisError(
-                f"the model {self.name} lives in this process alone; register it under the entry "
-                "point group cutis.models to use it in others"
-            )
-        from cutis.inverse.registry import reopened
-
-        return reopened, (self.name, *self.recipe, self.digest)
 
     def encode(self, rgb: ArrayLike) -> Map:
         """(..., 3) calibrated linear sRGB → (..., 5) parameters in their units.

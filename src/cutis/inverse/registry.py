@@ -5,6 +5,7 @@ that of the model, and what it points to a `Model`, or a function without argume
 Nothing of theirs is imported before it is asked for by name.
 """
 
+import copyreg
 import dataclasses
 from collections.abc import Callable
 from functools import cache
@@ -76,6 +77,19 @@ def reopened(name: str, recipe: str, device: str, digest: str) -> Model:
     return model
 
 
+def _as_recipe(model: Model) -> tuple[Callable[..., Model], tuple[str, str, str, str]]:
+    """A model travels as its recipe; what arrives is checked to be the same."""
+    if model.recipe is None:
+        raise CutisError(
+            f"the model {model.name} lives in this process alone; register it under the entry "
+            "point group cutis.models to use it in others"
+        )
+    return reopened, (model.name, *model.recipe, model.digest)
+
+
+copyreg.pickle(Model, _as_recipe)
+
+
 @cache
 def _ours(name: str, device: str) -> Model:
     if device != "cpu" and name not in shipped.NETWORKS:
@@ -110,7 +124,7 @@ def _entry_points() -> tuple[tuple[str, object], ...]:
 
 
 def _brought(point: object) -> Model:
-    return point.load()  # type: ignore[attr-defined,no-any-return]
+    return point.load()  # type: ignore[attr-defined]
 
 
 def _package(point: object) -> str:

@@ -5,10 +5,11 @@ renderer's add-on. All of them get the same results, bit for bit.
 """
 
 from cutis.jobs.edit import Edited, EditJob
-from cutis.jobs.estimate import CaptureFiles, Estimated, EstimateJob
+from cutis.jobs.estimate import EstimateJob
 from cutis.jobs.export import ExportJob
 from cutis.jobs.fit import FitJob, Fitted
 from cutis.jobs.job import Cancel, Cancelled, Job
+from cutis.jobs.outcome import CaptureFiles, Estimated
 from cutis.jobs.runners import Runner, cluster, here, processes
 from cutis.jobs.sets import estimate_sets
 from cutis.jobs.spectrum import SpectrumJob

@@ -15,7 +15,7 @@ from cutis.jobs.job import digest_of
 from cutis.maps import Change, Edit, Header, MapsFile, Step, find_source, maps_writer, open_source
 from cutis.maps.estimating import Progress, nobody
 from cutis.maps.skin_maps import Recolouring
-from cutis.maps.source import source_note
+from cutis.maps.source import orientation_of, source_note
 from cutis.optics import RARE_NAMES
 from cutis.textures import MaskFile, TextureFile, format_of, sweep, texture_writer
 from cutis.textures.udim import TOKEN, tile_of, udim_tiles
@@ -30,6 +30,8 @@ class Edited:
     clamped: tuple[int, ...]
     inside: int
     changed: int
+    notes: tuple[str, ...] = ()
+    """What was chosen or not believed in the capture and the mask."""
 
 
 @dataclass(frozen=True)
@@ -98,10 +100,13 @@ class EditJob:
                 raise CutisError(f"{path}: the texture is {texture.shape}, the maps {maps.shape}")
             mask = None
             if self.mask is not None:
-                mask = stack.enter_context(MaskFile(self.mask, maps.shape))
+                how = orientation_of(maps.provenance)
+                mask = stack.enter_context(MaskFile(self.mask, maps.frame, how))
             changes = (Step(self.edits, self.amount, mask),)
             model = self.model or maps.made_by.load()
             done = self._albedo(stack, maps, texture, changes, mask, model, progress)
+            notes = (*texture.notes, *([] if mask is None else mask.notes))
+            done = replace(done, notes=notes)
             if self.save_maps is not None:
                 self._maps(stack, maps, texture, changes, done, model, progress)
         return done

@@ -7,7 +7,7 @@ first. Each goes through in bands of rows, so that memory does not grow with the
 import contextlib
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
@@ -17,8 +17,9 @@ from cutis.errors import CutisError
 from cutis.inverse import Model
 from cutis.inverse.calibration import Exposure, White
 from cutis.inverse.model import content_digest
-from cutis.jobs.files import check_outputs, made_folder
+from cutis.jobs.files import made_folder
 from cutis.jobs.job import Told, digest_of, tell, told
+from cutis.jobs.outcome import Asked, CaptureFiles, Estimated
 from cutis.jobs.results import FILES, MADE_FROM, Found, alone, look, made_from
 from cutis.maps import FileCapture, Header, Surveyed, estimate_bands, load_model, survey
 from cutis.maps.estimating import Progress, nobody
@@ -26,37 +27,17 @@ from cutis.maps.skin_maps import Estimate
 from cutis.maps.source import source_note
 from cutis.maps.writing import maps_writer
 from cutis.optics import NAMES
-from cutis.report import Regions, Report, RunningReport
+from cutis.report import Regions, RunningReport
 from cutis.report.page import write_report
 from cutis.report.previews import Previews
-from cutis.textures import MaskFile, TextureFile, channel_writer, replacing, sweep
-
-Asked = dict[str, Told]
-
-
-@dataclass(frozen=True)
-class CaptureFiles:
-    """A capture with the mask and the picture of regions that belong to it."""
-
-    face: Path
-    mask: Path | None = None
-    regions: Path | None = None
-
-
-@dataclass(frozen=True)
-class Estimated:
-    """What came of a capture: its report, or in one line why there is none.
-
-    `there` says that the result was there already, made of the same in the same way; `changed`
-    names the contents for whose sake it was made again.
-    """
-
-    face: Path
-    report: Report | None = None
-    failure: str | None = None
-    there: bool = False
-    changed: tuple[str, ...] = ()
-    pictures: dict[str, Any] = field(default_factory=dict, compare=False, repr=False)
+from cutis.textures import (
+    MaskFile,
+    Orientation,
+    TextureFile,
+    channel_writer,
+    replacing,
+    sweep,
+)
 
 
 @dataclass(frozen=True)
@@ -68,7 +49,8 @@ class EstimateJob:
     that of the capture, `colorspace` that of its texels, None for what the file says;
     `output_colorspace` is that of NAME.model.exr, None for linear sRGB. `half` stores maps in half
     the size, `sigma` adds standard deviations and confidence where the model knows them, `page`
-    adds NAME.report.html. `again` makes anew what is there, also what was made otherwise.
+    adds NAME.report.html. `orientation` "ignore" keeps pictures in the order they are stored in,
+    whatever their tag says. `again` makes anew what is there, also what was made otherwise.
     """
 
     captures: tuple[CaptureFiles, ...]
@@ -82,6 +64,7 @@ class EstimateJob:
     half: bool = False
     sigma: bool = True
     page: bool = False
+    orientation: Orientation = "auto"
     again: bool = field(default=False, metadata={"result": False})
 
     def __post_init__(self) -> None:
@@ -175,18 +158,18 @@ class EstimateJob:
     def _opened(self, capture: CaptureFiles) -> Iterator[FileCapture]:
         """A capture and its mask, open."""
         with contextlib.ExitStack() as stack:
-            texture = stack.enter_context(TextureFile(capture.face, self.colorspace or "auto"))
-            mask = None if capture.mask is None else MaskFile(capture.mask, texture.shape)
+            texture = stack.enter_context(
+                TextureFile(capture.face, self.colorspace or "auto", None, self.orientation)
+            )
+            mask = None
+            if capture.mask is not None:
+                mask = MaskFile(capture.mask, texture.frame, self.orientation)
             yield FileCapture(texture, None if mask is None else stack.enter_context(mask))
 
-    def check_names(self, capture: CaptureFiles) -> None:
-        """CutisError where a result of a capture would overwrite what is read."""
+    def outputs(self, capture: CaptureFiles) -> list[Path]:
+        """All files that may come of a capture."""
         stem = self.stem(capture)
-        inputs: dict[str, Path | None] = {}
-        for one in self.captures:
-            inputs[f"the capture {one.face.name}"] = one.face
-            inputs |= {"the mask": one.mask, "the picture of regions": one.regions}
-        check_outputs([Path(f"{stem}{end}") for end in ENDS], inputs)
+        return [Path(f"{stem}{end}") for end in ENDS]
 
     def _write(
         self, capture: CaptureFiles, known: Surveyed, asked: Asked, progress: Progress
@@ -197,15 +180,19 @@ class EstimateJob:
             run = _Run(self, known, opened, stem, stack)
             regions = None
             if capture.regions is not None:
-                regions = Regions(capture.regions, opened.shape)
+                frame = opened.texture.frame
+                regions = stack.enter_context(Regions(capture.regions, frame, self.orientation))
             run.through(regions, progress)
             if not opened.seen:
                 raise opened.empty()
         texture = opened.texture
+        notes = [*texture.notes, *([] if opened.mask is None else opened.mask.notes)]
+        numbers = () if regions is None else regions.finish()
         report = replace(
             run.report.finish(),
             colorspace=f"{texture.space.name} ({texture.origin})",
-            regions=() if regions is None else regions.finish(),
+            regions=numbers,
+            notes=(*notes, *([] if regions is None else regions.notes)),
         )
         total = opened.shape[0] * opened.shape[1]
         progress(total, total, "drawing previews")
@@ -249,9 +236,11 @@ class _Run:
         self._notes = source_note(opened.texture)
         self._put_maps: Any = None
         self._put_model = stack.enter_context(
-            channel_writer(f"{stem}.model.exr", "RGB", opened.shape, kind, header)
+            channel_writer(
+                f"{stem}.model.exr", "RGB", opened.shape, kind, header, frame=opened.texture.frame
+            )
         )
-        self._open_maps = lambda first: stack.enter_context(
+        self._open_maps: Callable[[Estimate], Any] = lambda first: stack.enter_context(
             maps_writer(f"{stem}.skin.exr", self._header(first), opened.shape, kind)
         )
 

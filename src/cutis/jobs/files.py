@@ -1,14 +1,11 @@
 """Names of results: checked before any work is done."""
 
 import contextlib
-import os
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from cutis.errors import CutisError
-
-LONGEST = 255
-"""Bytes of a name of a file, on every system in use."""
+from cutis.textures import check_writable
 
 
 def same_file(one: Path, other: Path) -> bool:
@@ -19,7 +16,7 @@ def same_file(one: Path, other: Path) -> bool:
 
 
 def check_outputs(outputs: Iterable[Path | None], inputs: Mapping[str, Path | None]) -> None:
-    """CutisError where an output is an input, another output, or has too long a name.
+    """CutisError where an output is an input, another output, or no file that can be written.
 
     `inputs` are what is read, by what it is called.
     """
@@ -27,8 +24,7 @@ def check_outputs(outputs: Iterable[Path | None], inputs: Mapping[str, Path | No
     for output in outputs:
         if output is None:
             continue
-        if len(os.fsencode(output.name)) > LONGEST:
-            raise CutisError(f"{output.name[:60]}…: the name is too long; choose a shorter one")
+        check_writable(output)
         for what, path in inputs.items():
             if path is not None and same_file(output, path):
                 raise CutisError(f"{output} is {what} itself; write to another name")

@@ -20,7 +20,7 @@ from cutis.jobs.files import check_outputs, made_folder
 from cutis.jobs.job import digest_of, told
 from cutis.maps import Change, Edit, Step
 from cutis.maps.estimating import Progress, nobody
-from cutis.maps.source import digest
+from cutis.maps.source import digest, orientation_of
 from cutis.render.blender import Blender, find_blender
 from cutis.render.cycles import INDEX, METHOD, base_colour, facing
 from cutis.render.cycles import radius as cycles_radius
@@ -35,7 +35,7 @@ from cutis.render.material_export import export_material
 from cutis.render.medium import mean_free_path, of_maps
 from cutis.render.scene import Scene
 from cutis.render.skin import MAPS, Rows, Skin
-from cutis.textures import MaskFile, TextureFile, format_of, read_texture, sweep
+from cutis.textures import MaskFile, Orientation, TextureFile, format_of, read_texture, sweep
 
 METRE = 1000.0
 """Millimetres per scene unit of an exported material, unless the scene says otherwise."""
@@ -50,7 +50,8 @@ class Subject:
     `skin` is a file of maps or an albedo texture. `edits` apply in order, `amount` (0–1) of them,
     inside the painted `mask`. `source` is the capture of maps where it is not where they say,
     `model_only` leaves it out. `colorspace` is that of a texture, None for what it says. `radius`
-    is one of `RADII`. `head` is the bundled head that the scene shows, if it is one.
+    is one of `RADII`. `head` is the bundled head that the scene shows, if it is one. `orientation`
+    "ignore" keeps a texture in the order it is stored in.
     """
 
     skin: Path
@@ -63,6 +64,7 @@ class Subject:
     colorspace: Space | None = None
     radius: str = "tissue"
     head: Head | None = None
+    orientation: Orientation = "auto"
 
     def __post_init__(self) -> None:
         if self.radius not in RADII:
@@ -74,7 +76,10 @@ class Subject:
         """The skin, open, and the changes that the edits are."""
         with contextlib.ExitStack() as stack:
             space = self.colorspace or "auto"
-            skin = Skin(self.skin, source=self.source, model_only=self.model_only, colorspace=space)
+            skin = Skin(
+                self.skin, source=self.source, model_only=self.model_only, colorspace=space,
+                orientation=self.orientation,
+            )  # fmt: skip
             stack.enter_context(skin)
             if self.head is not None:
                 _check_fit(skin, self.head)
@@ -88,7 +93,9 @@ class Subject:
             return ()
         mask = None
         if self.mask is not None:
-            mask = stack.enter_context(MaskFile(self.mask, skin.shape))
+            kept = self.orientation
+            how = kept if skin.maps is None else orientation_of(skin.maps.provenance)
+            mask = stack.enter_context(MaskFile(self.mask, skin.shape, how))
         return (Step(edits, self.amount, mask),)
 
     def inputs(self) -> dict[str, Path | None]:
@@ -111,6 +118,7 @@ class Rendered:
     animation: Path | None = None
     device: str = ""
     credits: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -155,6 +163,7 @@ class RenderJob:
                 names, {"the capture": None if skin.capture is None else skin.capture.path}
             )
             result.credits = credits_of(subject.scene.mesh, *skin.origins())
+            result.notes = tuple(skin.notes)
             base = _recipe(subject, skin, blender) if sequence else {}
             feeds = _Feeds(subject, skin, changes, Path(folder), stack)
             recipes: dict[Path, tuple[Path, str]] = {}

@@ -105,7 +105,7 @@ def alone(result: Path) -> Iterator[None]:
             else:
                 import msvcrt
 
-                msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)  # type: ignore[attr-defined]
+                msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
         except OSError as error:
             os.close(descriptor)
             if error.errno in (11, 13, 35, 36):

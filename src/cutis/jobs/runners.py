@@ -131,8 +131,10 @@ def _client(address: str) -> Any:
         from distributed import Client
     except ModuleNotFoundError:
         raise CutisError("clusters need Dask; pip install 'cutis[cluster]'") from None
-    for name in ("distributed", "tornado"):  # what they have to say is said in one line of ours
-        logging.getLogger(name).setLevel(logging.CRITICAL)
+    for name in ("distributed", "tornado", *logging.root.manager.loggerDict):
+        if name.partition(".")[0] in ("distributed", "tornado"):
+            # what they have to say is said in one line of ours
+            logging.getLogger(name).setLevel(logging.CRITICAL + 1)
     try:
         client = Client(address, timeout=PATIENCE)
     except (OSError, ValueError, TimeoutError) as error:

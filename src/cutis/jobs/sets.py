@@ -6,14 +6,20 @@ one by one, wherever the runner does its work.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from cutis.errors import CutisError
-from cutis.jobs.estimate import Asked, CaptureFiles, Estimated, EstimateJob
+from cutis.jobs.files import check_outputs
+from cutis.jobs.outcome import Asked, CaptureFiles, Estimated
 from cutis.jobs.results import look
 from cutis.jobs.runners import Runner, in_one_line
 from cutis.maps import Surveyed
 from cutis.maps.estimating import Progress
 from cutis.report import Report
+
+if TYPE_CHECKING:
+    from cutis.jobs.estimate import EstimateJob
 
 FLAGS = {
     "light": "--illuminant", "page": "--report", "sigma": "--no-sigma",
@@ -26,13 +32,13 @@ FLAGS = {
 class _Open:
     """A set with captures to estimate, what they depend on, and what changed of each."""
 
-    job: EstimateJob
+    job: "EstimateJob"
     todo: dict[CaptureFiles, Asked]
     changed: dict[CaptureFiles, tuple[str, ...]]
 
 
 def estimate_sets(
-    jobs: Sequence[EstimateJob], runner: Runner, progress: Progress
+    jobs: "Sequence[EstimateJob]", runner: Runner, progress: Progress
 ) -> Iterator[Estimated]:
     """Estimates all captures of all sets, yielding one outcome for each, as they come.
 
@@ -40,9 +46,17 @@ def estimate_sets(
     content behind a flag has changed they are made again; where flags have, they fail, naming
     those, unless the job says `again`.
     """
-    waiting: list[_Open] = []
+    jobs, waiting = [job.absolute() for job in jobs], list[_Open]()
+    read: dict[str, Path | None] = {}
+    for one in (one for job in jobs for one in job.captures):
+        read[f"the capture {one.face.name}"] = one.face
+        for what, path in (("mask", one.mask), ("picture of regions", one.regions)):
+            if path is not None:
+                read[f"the {what} {path.name}"] = path
     for job in jobs:
-        job = job.absolute()
+        for capture in job.captures:
+            check_outputs(job.outputs(capture), read)
+    for job in jobs:
         outcomes, opened = _sorted_out(job)
         yield from outcomes
         if opened.todo:
@@ -60,12 +74,11 @@ def estimate_sets(
             yield _arrived(opened, capture, found)
 
 
-def _sorted_out(job: EstimateJob) -> tuple[list[Estimated], _Open]:
+def _sorted_out(job: "EstimateJob") -> tuple[list[Estimated], _Open]:
     """Outcomes that are known before any work, and what is left to do."""
     outcomes, opened, shared = [], _Open(job, {}, {}), job.shared()
     for capture in job.captures:
         try:
-            job.check_names(capture)
             wanted = {**shared, **job.own(capture)}
             found = job.found(capture, wanted)
         except (CutisError, OSError) as error:

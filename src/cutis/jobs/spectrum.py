@@ -27,7 +27,11 @@ from cutis.optics import (
     skin,
     with_rare_chromophores,
 )
+from cutis.spectra import text_cell
+from cutis.spectra.sheets import read_text
+from cutis.spectra.sheets import rows as rows_of
 from cutis.textures import replacing, sweep
+from cutis.textures.problem import shorten
 
 
 @dataclass(frozen=True)
@@ -70,11 +74,11 @@ class SpectrumJob:
             rows = [[f"{lam:g}", f"{r:.6f}"] for lam, r in lines]
         else:
             columns, table, parameters = read_skins(self.skins, RARE_NAMES)
-            header = [*columns, *(f"{lam:g}" for lam in WAVELENGTHS)]
+            header = [*map(text_cell, columns), *(f"{lam:g}" for lam in WAVELENGTHS)]
             tissue = rare if parameters.shape[1] > len(NAMES) else tissue
             spectra = albedo_space(tissue).reflectance(parameters)
             rows = [
-                [*cells, *(f"{r:.6f}" for r in values)]
+                [*map(text_cell, cells), *(f"{r:.6f}" for r in values)]
                 for cells, values in zip(table, spectra, strict=True)
             ]
         text = io.StringIO()
@@ -96,15 +100,11 @@ def read_skins(
 
     With a column of one of the `rare` chromophores that are welcome, parameters are (n, 8).
     """
-    try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            lines = (line for line in file if line.strip() and not line.startswith("#"))
-            columns, *table = list(csv.reader(lines)) or [[]]
-    except FileNotFoundError:
-        raise CutisError(f"{path}: no such file") from None
-    except (UnicodeDecodeError, csv.Error):
-        raise CutisError(f"{path.name}: not a CSV file in UTF-8") from None
-    columns = [name.strip() for name in columns]
+    lines = rows_of(path, read_text(path), ",")
+    while lines and lines[0].cells[0].startswith("#"):  # comments stand before the header
+        lines.pop(0)
+    columns = lines[0].cells if lines else []
+    table = [row.cells for row in lines[1:]]
     for name in columns:
         if name in RARE_NAMES and name not in rare:
             raise CutisError(f"{path.name}: {name} is not taken here; leave its column out")
@@ -112,7 +112,8 @@ def read_skins(
     known = [i for i, name in enumerate(columns) if name in names]
     for name in set(columns) - set(names):
         if close := difflib.get_close_matches(name.lower(), names, 1, 0.8):
-            raise CutisError(f"{path.name}: column {name!r} is not a parameter; is it {close[0]}?")
+            said = f"column '{shorten(name)}' is not a parameter; is it {close[0]}?"
+            raise CutisError(f"{path.name}: {said}")
     if not known or not table:
         raise CutisError(
             f"{path.name}: needs a header with some of {', '.join(NAMES)} and a row per skin"
@@ -125,7 +126,7 @@ def read_skins(
                 raise CutisError(f"{len(cells)} cells under {len(columns)} columns")
             parameters[number - 1] = skin({columns[i]: float(cells[i]) for i in known}, order)
         except ValueError as error:
-            raise CutisError(f"{path.name}, skin {number}: {error}") from None
+            raise CutisError(f"{path.name}, skin {number}: {shorten(str(error))}") from None
     return columns, table, parameters
 
 

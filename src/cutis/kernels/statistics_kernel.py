@@ -5,30 +5,10 @@ from typing import Any
 import numpy as np
 
 from cutis.kernels.compiling import compiled, on_all_cores
-from cutis.kernels.difference_kernel import colour_difference, relative_lab
 from cutis.kernels.warp_kernel import coordinate_of, slope_of
 
 PIECE, ROWS = 2048, 16
 """Texels, and rows of them, that a thread works on at a time."""
-
-
-@on_all_cores(PIECE)
-def judge(
-    start: Any, stop: Any, truth: Any, model: Any, matrix: Any, least: Any, errors: Any,
-    angles: Any, skin: Any
-) -> None:  # fmt: skip
-    """Fills skin (n,), and where that is True errors in CIEDE2000 and angles, ITA in degrees.
-
-    Of pairs of linear RGB (n, 3), where truth decides what is skin. `least` are L* and C*ab that
-    skin lies above, `matrix` (3, 3) gives XYZ over that of white.
-    """
-    for i in range(start, stop):
-        l1, a1, b1 = relative_lab(truth[i, 0], truth[i, 1], truth[i, 2], matrix)
-        skin[i] = l1 > least[0] and a1 * a1 + b1 * b1 > least[1] * least[1]
-        if skin[i]:
-            l2, a2, b2 = relative_lab(model[i, 0], model[i, 1], model[i, 2], matrix)
-            errors[i] = colour_difference(l1, a1, b1, l2, a2, b2)
-            angles[i] = np.degrees(np.arctan2(l1 - 50.0, b1))
 
 
 @on_all_cores(ROWS)

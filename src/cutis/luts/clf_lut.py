@@ -18,14 +18,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutis.albedo import albedo_space, halton
+from cutis.arrays import Floats
 from cutis.colour import decode_srgb
 from cutis.errors import CutisError
 from cutis.inverse.calibration import Calibration
 from cutis.luts.cube_lut import LARGEST, Space, is_linear
 from cutis.luts.recolouring import Recolouring
 from cutis.optics import ALIAGA2022, Tissue
-
-Array = NDArray[np.floating]
 
 OFFSET = 0.002
 """Linear value added before the logarithm, so that black has one."""
@@ -56,11 +55,11 @@ class SkinLut:
     """
 
     encoded: bool
-    matrix: Array
-    shift: Array
-    spread: Array
-    table: Array
-    gather: Array
+    matrix: Floats
+    shift: Floats
+    spread: Floats
+    table: Floats
+    gather: Floats
 
 
 def is_encoded(space: Space) -> bool:
@@ -123,7 +122,7 @@ def skin_lut(
     )
 
 
-def balanced(table: Array) -> Array:
+def balanced(table: Floats) -> Floats:
     """Nodes over skin moved so that straight lines between them lie about the curve.
 
     Between nodes a curve of second difference d lies up to d/8 and on average d/12 off the line.
@@ -144,13 +143,13 @@ def _grid(size: int) -> NDArray[np.int64]:
     return np.indices((size, size, size)).reshape(3, -1).T
 
 
-def _skins(known: Calibration, from_srgb: Array, tissue: Tissue) -> Array:
+def _skins(known: Calibration, from_srgb: Floats, tissue: Tissue) -> Floats:
     """(n, 3) u, v, w of the albedo space under the light of the capture."""
     skins = known.undo(albedo_space(tissue).rgb(halton(20_000, 3))) @ from_srgb
     return np.asarray(np.log(np.maximum(skins, 0) + OFFSET) @ TO_UVW.T)
 
 
-def _nodes(places: Array, low: float, high: float, count: int) -> Array:
+def _nodes(places: Floats, low: float, high: float, count: int) -> Floats:
     """(count,) steps from `low` to `high`, EVEN of them evenly and the rest as skins' `places`."""
     line = np.linspace(low, high, STEPS + 1)
     share = np.searchsorted(np.sort(places), line) / len(places)
@@ -159,7 +158,7 @@ def _nodes(places: Array, low: float, high: float, count: int) -> Array:
     return np.round(np.interp(np.linspace(0, 1, count), share, line))
 
 
-def _axes(skins: Array) -> tuple[Array, Array, Array, Array]:
+def _axes(skins: Floats) -> tuple[Floats, Floats, Floats, Floats]:
     """First value and step (3,) of the curves over u, v, w; their steps at which skin starts, ends.
 
     `skins` (n, 3) are u, v, w of all that is skin.

@@ -11,6 +11,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from cutis.arrays import Floats
 from cutis.errors import CutisError
 from cutis.luts.node_fit import refit
 from cutis.luts.recolouring import Recolouring
@@ -30,10 +31,10 @@ class Space(Protocol):
     def name(self) -> str:
         """What it is called."""
 
-    def to_linear_srgb(self, values: ArrayLike) -> NDArray[np.floating]:
+    def to_linear_srgb(self, values: ArrayLike) -> Floats:
         """(..., 3) stored values → linear sRGB."""
 
-    def from_linear_srgb(self, rgb: ArrayLike) -> NDArray[np.floating]:
+    def from_linear_srgb(self, rgb: ArrayLike) -> Floats:
         """(..., 3) linear sRGB → stored values."""
 
 
@@ -49,12 +50,12 @@ class Lut:
     shaper: NDArray[np.float32] | None
 
 
-def shape(values: ArrayLike) -> NDArray[np.floating]:
+def shape(values: ArrayLike) -> Floats:
     """Linear values of 0 to 1 → places on the grid, log(1 + x / KNEE) from 0 to 1."""
     return np.log1p(np.asarray(values) / KNEE) / np.log1p(1 / KNEE)
 
 
-def unshape(places: ArrayLike) -> NDArray[np.floating]:
+def unshape(places: ArrayLike) -> Floats:
     """Places of 0 to 1 on the grid → linear values of 0 to 1: the inverse of `shape`."""
     return KNEE * np.expm1(np.asarray(places) * np.log1p(1 / KNEE))
 
@@ -76,10 +77,10 @@ def edit_lut(edit: Recolouring, size: int, space: Space, *, fit: bool = True) ->
         raise CutisError(f"a LUT has 2 to {LARGEST} nodes along a side, not {size}")
     shaped = is_linear(space)
 
-    def stored(places: NDArray[np.floating]) -> NDArray[np.floating]:
+    def stored(places: Floats) -> Floats:
         return unshape(places) if shaped else places
 
-    def edited(places: NDArray[np.floating]) -> NDArray[np.floating]:
+    def edited(places: Floats) -> Floats:
         values = stored(places)
         before = np.asarray(space.to_linear_srgb(values), dtype=np.float32)
         after = edit(before)
@@ -98,6 +99,6 @@ def edit_lut(edit: Recolouring, size: int, space: Space, *, fit: bool = True) ->
     return Lut(table.astype(np.float32), curve)
 
 
-def _steepness(values: NDArray[np.floating]) -> NDArray[np.floating]:
+def _steepness(values: Floats) -> Floats:
     """Lightness per linear value, nearly: errors of linear values are weighed by it."""
     return 1.0 / (np.maximum(values, 0.0) + 0.01) ** 0.6

@@ -10,13 +10,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cutis.arrays import Floats
 from cutis.errors import CutisError
 from cutis.textures.atomic import replacing
 from cutis.textures.problem import problem
 
-Array = NDArray[np.floating]
 Operator = Any
 """A transform of OpenColorIO; the functions below make them."""
 
@@ -25,7 +24,7 @@ FORMATS = (".cube", ".clf")
 
 
 def write_cube(
-    path: str | os.PathLike[str], table: Array, shaper: Array | None = None, title: str = ""
+    path: str | os.PathLike[str], table: Floats, shaper: Floats | None = None, title: str = ""
 ) -> None:
     """Writes a .cube: `table` (n, n, n, 3) by red, green, blue, values from 0 to 1.
 
@@ -83,7 +82,7 @@ def logarithm(offset: float, inverse: bool = False) -> Operator:
     return found
 
 
-def matrix(values: Array, shift: Array) -> Operator:
+def matrix(values: Floats, shift: Floats) -> Operator:
     """(3,) → values (3, 3) @ it + shift (3,)."""
     import PyOpenColorIO as ocio
 
@@ -94,7 +93,7 @@ def matrix(values: Array, shift: Array) -> Operator:
     return ocio.MatrixTransform(matrix=square.ravel().tolist(), offset=[*map(float, shift), 0.0])
 
 
-def curves(values: Array) -> Operator:
+def curves(values: Floats) -> Operator:
     """Three curves (m, 3) over 0 to 1, straight between their points."""
     import PyOpenColorIO as ocio
 
@@ -103,7 +102,7 @@ def curves(values: Array) -> Operator:
     return _table(found, values)
 
 
-def grid(table: Array) -> Operator:
+def grid(table: Floats) -> Operator:
     """(n, n, n, 3) by the first, second and third channel, read trilinearly."""
     import PyOpenColorIO as ocio
 
@@ -111,7 +110,7 @@ def grid(table: Array) -> Operator:
     return _table(ocio.Lut3DTransform(gridSize=len(table)), table)
 
 
-def finite(values: Array) -> None:
+def finite(values: Floats) -> None:
     """Raises CutisError where `values` are not all finite as float32."""
     if not (np.abs(values) <= np.finfo(np.float32).max).all():
         raise CutisError(
@@ -120,7 +119,7 @@ def finite(values: Array) -> None:
         )
 
 
-def _table(found: Operator, values: Array) -> Operator:
+def _table(found: Operator, values: Floats) -> Operator:
     import PyOpenColorIO as ocio
 
     found.setFileOutputBitDepth(ocio.BIT_DEPTH_F32)
@@ -135,7 +134,7 @@ def _direction(inverse: bool) -> Any:
     return ocio.TRANSFORM_DIR_INVERSE if inverse else ocio.TRANSFORM_DIR_FORWARD
 
 
-def _rows(values: Array) -> str:
+def _rows(values: Floats) -> str:
     line = " ".join(["%.7f"] * values.shape[-1])
     return "\n".join(line % tuple(row) for row in values.tolist())
 

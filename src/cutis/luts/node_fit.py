@@ -10,7 +10,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.floating]
+from cutis.arrays import Floats, Where
 
 SAMPLES = 12
 """Places in a cell at which the function is looked at."""
@@ -18,7 +18,7 @@ STAY = 0.02
 """Pull of a node towards where it was, against that of the samples around a typical one."""
 
 
-def tetrahedral(places: Array, size: int) -> tuple[NDArray[np.int64], Array]:
+def tetrahedral(places: Floats, size: int) -> tuple[NDArray[np.int64], Floats]:
     """(n, 3) places of 0 to 1 → the four nodes (n, 4), blue fastest, and their weights (n, 4)."""
     scaled = places * (size - 1)
     corner = np.clip(scaled.astype(np.int64), 0, size - 2)
@@ -40,11 +40,11 @@ def tetrahedral(places: Array, size: int) -> tuple[NDArray[np.int64], Array]:
 
 
 def refit(
-    table: Array,
-    moved: NDArray[np.bool_],
-    function: Callable[[Array], Array],
-    weight: Callable[[Array], Array] | None = None,
-) -> Array:
+    table: Floats,
+    moved: Where,
+    function: Callable[[Floats], Floats],
+    weight: Callable[[Floats], Floats] | None = None,
+) -> Floats:
     """The table (n, n, n, 3) with nodes of cells that have a `moved` (n, n, n) corner fitted.
 
     `function` takes (k, 3) places of 0 to 1 to values (k, 3); `weight` says of values how much

@@ -9,8 +9,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cutis.arrays import Colours, Floats
 from cutis.colour import delta_e
 from cutis.errors import CutisError
 from cutis.inverse.calibration import Calibration
@@ -24,7 +24,7 @@ WHOLE, NONE = 8.0, 20.0
 """ΔE00 between a colour and the model's up to which an edit is whole, and from which there is
 none."""
 
-Recolouring = Callable[[NDArray[np.floating]], NDArray[np.float32]]
+Recolouring = Callable[[Floats], Colours]
 
 
 def recolouring(
@@ -49,7 +49,7 @@ def recolouring(
     light = replace(known, gains=(1.0, 1.0, 1.0))
     inverse = load_model(model)
 
-    def recoloured(captured: NDArray[np.floating]) -> NDArray[np.float32]:
+    def recoloured(captured: Floats) -> Colours:
         result = np.array(captured, dtype=np.float32)
         colours = known.apply(result)
         skins = inverse.encode(colours)
@@ -75,7 +75,7 @@ def recolouring(
     return recoloured
 
 
-def fading(error: NDArray[np.floating]) -> NDArray[np.floating]:
+def fading(error: Floats) -> Floats:
     """Share of an edit for colours that the model misses by `error` ΔE00: smooth from 1 to 0."""
     x = np.clip((error - WHOLE) / (NONE - WHOLE), 0.0, 1.0)
     return 1.0 - x * x * (3.0 - 2.0 * x)

@@ -29,21 +29,23 @@ LARGEST = 1e3
 class MapsFile(Closing):
     """An open file of skin maps: what its header says, and its maps some rows at a time.
 
-    `header` is a `Header`. Close it, or use it in a with block. Raises CutisError where channels
-    are missing, out of range, or the header is damaged.
+    `header` is a `Header`, `frame` says where the maps lie on their picture; with `shown` they are
+    those of all of it, outside the mask where nothing is stored. Close it, or use it in a with
+    block. Raises CutisError where channels are missing, out of range, or the header is
+    damaged.
     """
 
-    def __init__(self, path: str | os.PathLike[str]) -> None:
+    def __init__(self, path: str | os.PathLike[str], shown: bool = False) -> None:
         self.path = Path(path)
         if self.path.is_file() and self.path.suffix.lower() != ".exr":
             raise CutisError(
                 f"{self.path.name} is not a file of skin maps (NAME.skin.exr); "
                 "make one from a texture with: cutis estimate"
             )
-        self._file = ChannelFile(path)
+        self._file = ChannelFile(path, shown)
         try:
             self._check_channels()
-            self.shape = self._file.shape
+            self.shape, self.frame = self._file.shape, self._file.frame
             self.header = self._read_header()
         except BaseException:
             self.close()
@@ -77,6 +79,9 @@ class MapsFile(Closing):
         rare = tuple(name for name in RARE_NAMES if name in there)
         known = (*NAMES, *rare)
         provenance = {k: v for k, v in notes.items() if k not in (*NAMES, *RARE_NAMES)}
+        provenance.pop("window", None)  # what the file says of itself counts
+        if not self.frame.whole:
+            provenance["window"] = self.frame.note()
         config = provenance.get("source_ocio")
         if config and "://" not in config:
             provenance["source_ocio"] = os.path.join(self.path.resolve().parent, config)

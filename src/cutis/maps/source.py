@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from cutis.errors import CutisError
 from cutis.maps.plain import Map
-from cutis.textures import MaskFile, Texture, TextureFile, bands
+from cutis.textures import MaskFile, Orientation, Texture, TextureFile, bands
 
 
 class Capture(Protocol):
@@ -135,9 +135,10 @@ def _linear(face: ArrayLike) -> Map:
 
 
 def source_note(source: TextureFile | Texture) -> dict[str, str]:
-    """Provenance of a capture: its whole path, SHA-256 and the colour space it was read in.
+    """Provenance of a capture: its whole path, SHA-256, and how it was read: space, orientation.
 
-    Maps store the path as seen from their folder. Empty without a file.
+    Maps store the path as seen from their folder. `window` tells where its texels lie on its
+    picture, if they are not all of it. Empty without a file.
     """
     if source.path is None or not source.path.is_file():
         return {}
@@ -145,18 +146,31 @@ def source_note(source: TextureFile | Texture) -> dict[str, str]:
         "source": source.path.resolve().as_posix(),
         "source_sha256": digest(source.path),
         "source_colorspace": source.space.name if source.origin == "given" else "auto",
+        "source_orientation": "ignore" if source.orientation == "ignore" else str(source.turned),
     }
+    if not source.frame.whole:
+        note["window"] = source.frame.note()
     config = getattr(source.space, "config", None)
     if not config or source.origin != "given":
         return note
     return {**note, "source_ocio": config if "://" in config else Path(config).resolve().as_posix()}
 
 
-def open_source(provenance: Mapping[str, str], capture: Path) -> TextureFile:
-    """The capture that maps were made from, opened and understood as it was then."""
+def open_source(provenance: Mapping[str, str], capture: Path, shown: bool = False) -> TextureFile:
+    """The capture that maps were made from, opened and understood as it was then.
+
+    With `shown` its rows are those of the whole picture (`TextureFile`).
+    """
     space = provenance.get("source_colorspace", "auto")
     # the configuration of then, or none: $OCIO may have changed since
-    return TextureFile(capture, space, provenance.get("source_ocio", ""))
+    config, turning = provenance.get("source_ocio", ""), orientation_of(provenance)
+    return TextureFile(capture, space, config, turning, shown)
+
+
+def orientation_of(provenance: Mapping[str, str]) -> Orientation:
+    """How the capture of maps is to be turned; until version 0.1 it was not."""
+    before = "source" in provenance and "source_orientation" not in provenance
+    return "ignore" if before or provenance.get("source_orientation") == "ignore" else "auto"
 
 
 def find_source(provenance: Mapping[str, str], maps_path: Path, given: Path | None = None) -> Path:

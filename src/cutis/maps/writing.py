@@ -25,6 +25,7 @@ from cutis.inverse.model import State
 from cutis.maps.trust import CONFIDENCE, SIGMA
 from cutis.optics import NAMES, PARAMETERS, RARE
 from cutis.textures.channels import channel_writer
+from cutis.textures.frame import noted_frame
 from cutis.textures.texture import bands
 
 if TYPE_CHECKING:
@@ -113,7 +114,8 @@ def maps_writer(
     trust += (CONFIDENCE,) if header.confident else ()
     names = (*maps, *(ORIGINAL + name for name in changed), *trust)
     attributes = header.attributes(path)
-    with channel_writer(path, names, shape, dtype, attributes, half=trust) as put:
+    frame = noted_frame(header.provenance.get("window", ""), shape)
+    with channel_writer(path, names, shape, dtype, attributes, trust, frame) as put:
 
         def write(part: "SkinMaps") -> None:
             channels: dict[str, Any] = {name: part.map(name) for name in maps[:-1]}

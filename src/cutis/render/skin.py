@@ -17,9 +17,10 @@ from cutis.colour import Space
 from cutis.errors import CutisError
 from cutis.maps import Change, MapsFile, SkinMaps, default_tissue, find_source, open_source
 from cutis.optics import Tissue
-from cutis.textures import TextureFile
+from cutis.textures import Orientation, TextureFile
 from cutis.textures.closing import Closing
 
+_TURNED = tuple("2345678")  # numbers of orientation tags
 MAPS = ".skin.exr"
 """How names of files of maps end."""
 
@@ -37,8 +38,9 @@ class Skin(Closing):
 
     `path` is NAME.skin.exr, or an albedo texture, whose colours are taken as they are. `source` is
     the capture of maps, where it is not what their header names; `model_only` leaves it out.
-    `shape` is (H, W). Close it, or use it in a with
-    block. Raises CutisError for files that cannot be read.
+    `shape` is (H, W) of the picture that UVs from 0 to 1 cover, `notes` say what was chosen in the
+    files. `orientation` "ignore" keeps a texture in the order it is stored in. Close it, or use it
+    in a with block. Raises CutisError for files that cannot be read.
     """
 
     def __init__(
@@ -48,19 +50,28 @@ class Skin(Closing):
         source: Path | None = None,
         model_only: bool = False,
         colorspace: str | Space = "auto",
+        orientation: Orientation = "auto",
     ) -> None:
         self.path = Path(path)
         self.maps: MapsFile | None = None
         self.capture: TextureFile | None = None
+        self.notes: list[str] = []
         try:
             if self.path.name.endswith(MAPS):
-                self.maps = MapsFile(self.path)
+                self.maps = MapsFile(self.path, shown=True)
                 self.shape = self.maps.shape
+                number = self.maps.provenance.get("source_orientation", "")
+                if number in _TURNED:
+                    self.notes.append(
+                        f"the capture was turned as its orientation tag ({number}) says; if the "
+                        "UVs know no tag, estimate with --orientation ignore"
+                    )
                 if not model_only:
                     self._find_capture(source)
             else:
-                self.capture = TextureFile(self.path, colorspace)
+                self.capture = TextureFile(self.path, colorspace, None, orientation, shown=True)
                 self.shape = self.capture.shape
+                self.notes += self.capture.notes
         except BaseException:
             self.close()
             raise
@@ -71,7 +82,7 @@ class Skin(Closing):
         if given is None and "source" not in notes:
             return
         path = find_source(notes, self.path, given)
-        self.capture = open_source(notes, path)
+        self.capture = open_source(notes, path, shown=True)
         if self.capture.shape != self.shape:
             raise CutisError(f"{path}: the texture is {self.capture.shape}, the maps {self.shape}")
 

@@ -4,8 +4,8 @@ from functools import lru_cache
 from importlib import resources
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cutis.arrays import Bytes, Floats
 from cutis.colour import encode_srgb
 
 COLOUR_MAPS = {
@@ -21,7 +21,7 @@ ERRORS, SURE = "magma", "viridis"
 
 
 @lru_cache
-def colour_map(name: str, levels: int = 256) -> NDArray[np.uint8]:
+def colour_map(name: str, levels: int = 256) -> Bytes:
     """(levels, 3) encoded sRGB of a colour map from low to high, of at most 256 colours.
 
     The tables are `data/page/colour_maps.csv`; `python -m studies.build_appearance` writes them.
@@ -37,6 +37,6 @@ def colour_map(name: str, levels: int = 256) -> NDArray[np.uint8]:
     return table
 
 
-def displayed(rgb: NDArray[np.floating]) -> NDArray[np.floating]:
+def displayed(rgb: Floats) -> Floats:
     """(H, W, 3) linear sRGB → what a screen shows, in [0, 1]."""
     return np.clip(encode_srgb(rgb), 0, 1)

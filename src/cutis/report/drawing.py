@@ -12,8 +12,8 @@ from importlib import resources
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cutis.arrays import Bytes, Floats
 from cutis.report.appearance import colour_map
 from cutis.report.scale import Scale, tick_text
 
@@ -39,12 +39,12 @@ BESIDE = BAR + 64
 class Panel:
     """A map (h, W), NaN outside the mask, with its colour map, its scale and its title."""
 
-    values: NDArray[np.floating]
+    values: Floats
     colours: str
     scale: Scale
     title: str
 
-    def indices(self, first: int, levels: int, factor: int = 1) -> NDArray[np.uint8]:
+    def indices(self, first: int, levels: int, factor: int = 1) -> Bytes:
         """Places in the palette, the colours of the map being `levels` from `first` on."""
         place = self.scale.place(np.asarray(self.values, dtype=np.float32))
         known = np.isfinite(place)
@@ -123,12 +123,12 @@ class Page:
         """A thin line."""
         self._draw.line((start, end), 0)
 
-    def indices(self) -> NDArray[np.uint8]:
+    def indices(self) -> Bytes:
         """(rows, columns) greys of the palette."""
         return np.asarray(self._image) >> np.uint8(4)
 
 
-def paletted(index: NDArray[np.uint8], tables: Sequence[NDArray[np.uint8]]) -> "Image":
+def paletted(index: Bytes, tables: Sequence[Bytes]) -> "Image":
     """A picture of places in a palette: GREYS greys, then the colours of `tables`."""
     from PIL import Image
 

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cutis.arrays import Floats, Map
 from cutis.optics import PARAMETERS
 from cutis.report import findings, trust_words
 from cutis.report.appearance import COLOUR_MAPS, ERRORS, displayed
@@ -14,7 +14,7 @@ from cutis.report.pictures import LEVELS, coloured, data_uri, difference, photog
 from cutis.report.scale import Scale, bars_of, scale_of
 from cutis.report.words import number, percent, with_unit
 
-Pictures = Mapping[str, NDArray[np.float32]]
+Pictures = Mapping[str, Map]
 """Reduced pictures by name; see `page.write_report`."""
 GREY = 0.45
 """Of pictures outside the mask, encoded: no colour that could be taken for one of the skin."""
@@ -77,7 +77,7 @@ def colour_figures(report: Report, pictures: Pictures) -> list[Photograph | MapF
     if "error" in pictures:
         outside = ~np.isfinite(pictures["error"])[..., None]
 
-    def photo(rgb: NDArray[np.floating], name: str, text: str, side: str = "") -> Photograph:
+    def photo(rgb: Floats, name: str, text: str, side: str = "") -> Photograph:
         return Photograph(Picture.of(photograph(rgb)), name, text, side)
 
     found: list[Photograph | MapFigure] = []
@@ -129,7 +129,7 @@ def map_figures(report: Report, pictures: Pictures) -> list[MapFigure]:
     return found
 
 
-def _error(report: Report, error: NDArray[np.floating]) -> MapFigure:
+def _error(report: Report, error: Floats) -> MapFigure:
     """ΔE00 from 0 to what 99 % stay below, 2 at least, so that good ones can be compared."""
     known = error[np.isfinite(error)]
     if not known.size:
@@ -145,7 +145,7 @@ def _error(report: Report, error: NDArray[np.floating]) -> MapFigure:
 
 
 def _map_figure(
-    values: NDArray[np.floating], colours: str, scale: Scale, bars: Bars,
+    values: Floats, colours: str, scale: Scale, bars: Bars,
     band: tuple[float, float, float], name: str, what: str, text: str, unit: str = "",
     known: tuple[str, str] = ("", ""),
 ) -> MapFigure:  # fmt: skip

@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cutis.arrays import Coordinates, Floats, Picture, Where
 from cutis.colour.difference import LIGHTEST_HAIR, PALEST, to_relative_xyz
 from cutis.errors import CutisError
 from cutis.inverse.calibration import Calibration
@@ -30,7 +30,7 @@ class RunningReport:
         self._maps, self._trust = MapStatistics(), TrustStatistics()
         self._errors = Histogram(0.0, 100.0)
         self._angles = Histogram(-180.0, 180.0)
-        self._squares, self._masked, self._below, self._above, self._beyond = 0.0, 0, 0, 0, 0
+        self._tallies = np.zeros(5)  # texels inside, below 0, above 1, out of gamut; squares
         self._smoothness = Smoothness()
 
     def add(self, skin: SkinMaps) -> None:
@@ -41,20 +41,19 @@ class RunningReport:
     def _add(self, skin: SkinMaps) -> None:
         if skin.source is None:
             raise CutisError("a report needs the capture; read it and estimate again")
-        inside = skin.mask > 0
-        source = skin.source[inside]
-        self._masked += len(source)
-        self._below += int(np.count_nonzero((source < 0).any(axis=1)))
-        self._above += int(np.count_nonzero((source > 1).any(axis=1)))
-        truth = skin.calibration.apply(source)
-        model = skin.calibration.apply(skin.model_albedo[inside])
-        errors, angles, texels = judged(truth, model)
-        self._squares += float(np.sum((model[texels] - truth[texels]) ** 2, dtype=np.float64))
-        self._errors.add(errors[texels])
-        self._beyond += int(np.count_nonzero(errors[texels] > GAMUT_DELTA_E))
-        self._angles.add(angles[texels])
-        where = np.zeros(skin.shape, dtype=bool)
-        where[inside] = texels
+        from cutis.report.judging_kernel import judge
+
+        inside, rows = skin.mask > 0, skin.shape[0]
+        errors, angles = np.empty(skin.shape, np.float32), np.empty(skin.shape, np.float32)
+        where, tallies = np.empty(skin.shape, np.bool_), np.empty((rows, 5))
+        judge(
+            rows, skin.source, skin.model_albedo, inside,
+            self._calibration.apply(np.eye(3)).T.copy(), to_relative_xyz(),
+            (LIGHTEST_HAIR, PALEST), GAMUT_DELTA_E, where, errors, angles, tallies,
+        )  # fmt: skip
+        self._tallies += tallies.sum(axis=0)
+        self._errors.add(errors[where])
+        self._angles.add(angles[where])
         u = skin.coordinates()
         self._maps.add(u, inside)
         self._trust.add(skin.sigmas, skin.confidence, u, inside)
@@ -63,15 +62,16 @@ class RunningReport:
     def finish(self) -> Report:
         """The numbers; see `report`."""
         statistics, how = self._maps, self._calibration
+        masked, below, above = (int(count) for count in self._tallies[:3])
         percentiles, histograms = statistics.percentiles(), statistics.histograms()
         trust, count = self._trust.finish(self._model), self._errors.count
         return Report(
             model=self._model.name,
             size=self._shape,
-            masked_texels=self._masked,
+            masked_texels=masked,
             skin_texels=count,
-            below_0=self._below,
-            above_1=self._above,
+            below_0=below,
+            above_1=above,
             calibration=CalibrationNumbers(
                 tuple(round(g, 5) for g in how.gains), how.origin, how.light
             ),
@@ -88,12 +88,12 @@ class RunningReport:
         )
 
     def _colour(self) -> ColourNumbers:
-        count = self._errors.count
+        count, (beyond, squares) = self._errors.count, self._tallies[3:]
         return ColourNumbers(
-            mse=self._squares / (3 * count),
+            mse=float(squares) / (3 * count),
             delta_e_mean=self._errors.mean(),
             delta_e_p95=self._errors.percentile(0.95),
-            out_of_gamut=self._beyond / count,
+            out_of_gamut=int(beyond) / count,
             ita_median=self._angles.percentile(0.5),
         )
 
@@ -134,30 +134,15 @@ def report(skin: SkinMaps) -> dict[str, Any]:
     return running.finish().as_dict()
 
 
-def judged(
-    truth: NDArray[np.float32], model: NDArray[np.float32]
-) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_]]:
-    """CIEDE2000 and ITA (n,) of colours (n, 3), where the third says that they are skin's."""
-    from cutis.kernels.statistics_kernel import judge
-
-    errors, angles = np.zeros(len(truth), np.float32), np.zeros(len(truth), np.float32)
-    skin = np.zeros(len(truth), np.bool_)
-    least = LIGHTEST_HAIR, PALEST
-    judge(len(truth), truth, model, to_relative_xyz(), least, errors, angles, skin)
-    return errors, angles, skin
-
-
 class Smoothness:
     """Mean neighbour difference of each map over that of the capture, over chosen texels."""
 
     def __init__(self) -> None:
         self._maps, self._colour = np.zeros(5), np.zeros(3)
-        self._last: tuple[NDArray[np.bool_], NDArray[np.floating], NDArray[np.floating]] | None
+        self._last: tuple[Where, Floats, Floats] | None
         self._last = None
 
-    def add(
-        self, u: NDArray[np.float32], source: NDArray[np.float32], where: NDArray[np.bool_]
-    ) -> None:
+    def add(self, u: Coordinates, source: Picture, where: Where) -> None:
         """The next rows: coordinates (h, W, 5), capture (h, W, 3), texels (h, W) that count."""
         from cutis.kernels.statistics_kernel import differences
 

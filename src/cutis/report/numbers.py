@@ -83,6 +83,7 @@ class Report:
 
     What is not known is None or empty: `colour` and `smoothness` without a skin texel, regions
     without a picture of them, `low_confidence` and what maps say of σ where the model has none.
+    `notes` say in words what was chosen in the files, or not believed.
     """
 
     model: str = ""
@@ -99,6 +100,7 @@ class Report:
     smoothness: Mapping[str, float] = field(default_factory=dict)
     colorspace: str | None = None
     regions: tuple[RegionNumbers, ...] = ()
+    notes: tuple[str, ...] = ()
 
     @property
     def skin_share(self) -> float:

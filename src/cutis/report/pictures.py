@@ -8,8 +8,8 @@ import io
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cutis.arrays import Floats, Map
 from cutis.report.appearance import colour_map, displayed
 from cutis.report.scale import Scale
 
@@ -21,7 +21,7 @@ LEVELS = 95
 """Colours of a map, besides that of texels outside the mask, which is none."""
 
 
-def photograph(rgb: NDArray[np.floating]) -> tuple[bytes, tuple[int, int]]:
+def photograph(rgb: Floats) -> tuple[bytes, tuple[int, int]]:
     """(H, W, 3) in [0, 1], encoded as shown → a JPEG and its width and height."""
     from PIL import Image
 
@@ -34,9 +34,7 @@ def photograph(rgb: NDArray[np.floating]) -> tuple[bytes, tuple[int, int]]:
     return data.getvalue(), picture.size
 
 
-def coloured(
-    values: NDArray[np.floating], colours: str, scale: Scale
-) -> tuple[bytes, tuple[int, int]]:
+def coloured(values: Floats, colours: str, scale: Scale) -> tuple[bytes, tuple[int, int]]:
     """A map (H, W), NaN outside the mask → a PNG, transparent there, and its width and height."""
     from PIL import Image
 
@@ -60,7 +58,7 @@ def _lengths() -> Iterator[int]:
         longest = longest * 4 // 5
 
 
-def reduced(values: NDArray[np.floating], longest: int) -> NDArray[np.float32]:
+def reduced(values: Floats, longest: int) -> Map:
     """(H, W[, 3]) → the mean over what is known of each pixel, longer side at most `longest`.
 
     A pixel most of which is not known (not finite) is NaN.
@@ -71,7 +69,7 @@ def reduced(values: NDArray[np.floating], longest: int) -> NDArray[np.float32]:
     factor = min(1.0, longest / max(height, width))
     size = max(1, round(width * factor)), max(1, round(height * factor))
 
-    def mean(channel: NDArray[np.float32]) -> NDArray[np.float32]:
+    def mean(channel: Map) -> Map:
         return np.asarray(Image.fromarray(channel).resize(size, Image.Resampling.BOX))
 
     known = np.isfinite(values)
@@ -84,7 +82,7 @@ def reduced(values: NDArray[np.floating], longest: int) -> NDArray[np.float32]:
     return result
 
 
-def difference(capture: NDArray[np.floating], model: NDArray[np.floating]) -> NDArray[np.floating]:
+def difference(capture: Floats, model: Floats) -> Floats:
     """Absolute difference of two linear sRGB pictures as shown, four times, in [0, 1]."""
     return np.clip(4 * np.abs(displayed(capture) - displayed(model)), 0, 1)
 

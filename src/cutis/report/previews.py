@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cutis.arrays import Map
 from cutis.colour import delta_e
 from cutis.errors import CutisError
 from cutis.inverse import Calibration
@@ -31,7 +31,7 @@ CELL = 450
 """Texels of the longer side of one map of several in a row."""
 
 
-def reduced(values: NDArray[np.float32]) -> NDArray[np.float32]:
+def reduced(values: Map) -> Map:
     """Every n-th texel, so that the longer side is at most LONGEST."""
     step = _step(values.shape[:2])
     return values[::step, ::step]
@@ -47,8 +47,8 @@ class Previews:
     def __init__(self, calibration: Calibration, shape: tuple[int, int]) -> None:
         self._calibration = calibration
         self._step = _step(shape)
-        self._parts: dict[str, list[NDArray[np.float32]]] = {}
-        self._whole: dict[str, NDArray[np.float32]] | None = None
+        self._parts: dict[str, list[Map]] = {}
+        self._whole: dict[str, Map] | None = None
 
     def add(self, skin: SkinMaps) -> None:
         """The next rows."""
@@ -56,7 +56,7 @@ class Previews:
         for name, values in self._seen(skin).items():
             self._parts.setdefault(name, []).append(values[rows, :: self._step].copy())
 
-    def _seen(self, skin: SkinMaps) -> dict[str, NDArray[np.float32]]:
+    def _seen(self, skin: SkinMaps) -> dict[str, Map]:
         found = {known.name: getattr(skin, known.name) for known in PARAMETERS}
         found |= {"mask": skin.mask, "model": skin.model_albedo}
         found |= {name + SIGMA: sigma for name, sigma in skin.sigmas.items()}
@@ -66,7 +66,7 @@ class Previews:
             found["capture"] = skin.source
         return found
 
-    def pictures(self) -> dict[str, NDArray[np.float32]]:
+    def pictures(self) -> dict[str, Map]:
         """Reduced pictures by name, NaN off the mask.
 
         `capture` and `model` (h, w, 3) in linear sRGB, `error` (h, w) in ΔE00, the maps (h, w) and,
@@ -112,7 +112,7 @@ class Previews:
         return [_saved(one, Path(f"{stem}.{name}.png")) for name, one in drawings.items()]
 
 
-def previews_of(maps: Path) -> dict[str, NDArray[np.float32]]:
+def previews_of(maps: Path) -> dict[str, Map]:
     """Reduced pictures of a file of maps, with its capture where that is at hand."""
     with contextlib.ExitStack() as stack:
         file = stack.enter_context(MapsFile(maps))
@@ -134,7 +134,7 @@ def titled(text: str, known: Parameter) -> str:
     return text if known.unit == "1" else f"{text} [{known.unit}]"
 
 
-def _spread(known: Parameter, pictures: Mapping[str, NDArray[np.float32]]) -> Panel:
+def _spread(known: Parameter, pictures: Mapping[str, Map]) -> Panel:
     """σ of a map from 0 to what 95 % stay below.
 
     Of texels that are likely skin, where there are some: what little is known of hair and edges

@@ -4,41 +4,49 @@ import os
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cutis.colour import delta_e, ita
 from cutis.errors import CutisError
 from cutis.maps.skin_maps import SkinMaps
 from cutis.maps.statistics import Histogram, MapStatistics
 from cutis.report.numbers import Percentiles, RegionNumbers
-from cutis.textures import TextureFile
+from cutis.textures import Frame, LabelFile, Orientation
+from cutis.textures.closing import Closing
 
 MOST = 32
 """Regions that a picture may have."""
+CRUMB = 0.002
+"""Share of all texels in regions below which one is hardly meant."""
 
 
-class Regions:
+class Regions(Closing):
     """Statistics of the texels of each colour of a picture; black is no region.
 
-    The picture is an RGB image of 8 or 16 bit of the size of the capture, painted in flat colours.
-    Raises CutisError for other pictures and for more than MOST colours (soft edges make many).
+    The picture is painted in flat colours, of the size of the capture's picture: `like` is the
+    frame of the capture, or its shape (H, W). `notes` say what was chosen in it, and which colours
+    are hardly anywhere. Raises CutisError for other pictures (`textures.LabelFile`) and for more
+    than MOST colours (soft edges make many). Close it, or use it in a with block.
     """
 
-    def __init__(self, path: str | os.PathLike[str], shape: tuple[int, int]) -> None:
+    def __init__(
+        self,
+        path: str | os.PathLike[str],
+        like: tuple[int, int] | Frame,
+        orientation: Orientation = "auto",
+    ) -> None:
         self._path = Path(path)
         self._found: dict[int, tuple[MapStatistics, Histogram, Histogram]] = {}
-        with TextureFile(self._path, "linear") as file:
-            if file.shape != shape:
-                raise CutisError(
-                    f"{self._path}: the regions have {file.shape[1]} × {file.shape[0]} texels, the "
-                    f"texture {shape[1]} × {shape[0]}; resize them without smoothing"
-                )
+        self._file = LabelFile(path, like, orientation)
+        self.notes = list(self._file.notes)
+
+    def close(self) -> None:
+        """Lets go of the picture."""
+        self._file.close()
 
     def add(self, skin: SkinMaps, rows: slice) -> None:
         """Some rows of an estimate, with their capture."""
         assert skin.source is not None
-        with TextureFile(self._path, "linear") as file:
-            labels = _labels(file.rows(rows).linear())
+        labels = self._file.rows(rows)
         inside = (skin.mask > 0) & (labels > 0)
         truth = skin.calibration.apply(skin.source[inside])
         model = skin.calibration.apply(skin.model_albedo[inside])
@@ -60,6 +68,13 @@ class Regions:
 
     def finish(self) -> tuple[RegionNumbers, ...]:
         """The regions, named by their colour as #rrggbb."""
+        counts = {label: found[1].count for label, found in self._found.items()}
+        crumbs = [n for label, n in counts.items() if n < CRUMB * sum(counts.values())]
+        if crumbs:
+            self.notes.append(
+                f"{len(crumbs)} of {len(counts)} regions have less than {100 * CRUMB:g} % of the "
+                "texels: edges that were smoothed? paint flat colours"
+            )
         return tuple(
             RegionNumbers(
                 name=f"#{label:06x}",
@@ -70,10 +85,3 @@ class Regions:
             )
             for label, (maps, differences, typology) in sorted(self._found.items())
         )
-
-
-def _labels(rgb: NDArray[np.float32]) -> NDArray[np.int32]:
-    """0xRRGGBB of each texel; 0 for nearly black, which JPEG-like noise may make of black."""
-    bytes_ = np.rint(np.clip(rgb, 0, 1) * 255).astype(np.int32)
-    labels = (bytes_[..., 0] << 16) | (bytes_[..., 1] << 8) | bytes_[..., 2]
-    return np.where(bytes_.max(axis=-1) < 4, 0, labels).astype(np.int32)

@@ -4,8 +4,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from cutis.arrays import Floats
 from cutis.report.numbers import Bars
 
 TAILS = 0.005
@@ -20,7 +21,7 @@ class Scale:
     high: float
     root: int = 1
 
-    def place(self, values: ArrayLike) -> NDArray[np.floating]:
+    def place(self, values: ArrayLike) -> Floats:
         """Values → where they lie on the scale, [0, 1]; NaN stays."""
         low, high = self._rooted(self.low), self._rooted(self.high)
         return (self._rooted(np.clip(values, self.low, self.high)) - low) / (high - low)
@@ -49,7 +50,7 @@ class Scale:
         # what spans less than a factor of two has no such values
         return sorted(found) if len(found) > 1 else _multiples(self.low, self.high, most)
 
-    def _rooted(self, values: ArrayLike) -> NDArray[np.floating]:
+    def _rooted(self, values: ArrayLike) -> Floats:
         x = np.asarray(values)
         x = x if x.dtype == np.float32 else x.astype(np.float64)
         if self.root == 3:
@@ -74,7 +75,7 @@ def scale_of(bars: Bars, root: int = 1) -> Scale:
     return Scale(low, max(high, low + 1e-6 * max(low, 1.0)), root)
 
 
-def bars_of(values: NDArray[np.floating], bins: int = 64) -> Bars:
+def bars_of(values: Floats, bins: int = 64) -> Bars:
     """A histogram of the finite among `values`, its outermost thousandths left out."""
     finite = values[np.isfinite(values)]
     ends = np.percentile(finite, [0.1, 99.9]) if finite.size else (0.0, 1.0)

@@ -17,6 +17,7 @@ def before(report: Report) -> Iterator[str]:
     """Lines above the table: what was read, and how it was calibrated."""
     known = report.calibration
     yield f"colour space: {report.colorspace}"
+    yield from report.notes
     light = f", captured under {known.illuminant}" if known.illuminant != "D65" else ""
     gains = ", ".join(f"{gain:.3f}" for gain in known.gains)
     yield f"gains {gains} ({known.origin}), model {report.model}{light}"

@@ -250,6 +250,10 @@ def _cgats(path: Path, text: str) -> SpectraFile:
     header = [
         cell for row in sheets.rows(path, "\n".join(lines[begin:end]), " ") for cell in row.cells
     ]
+    if not header:
+        raise problem(
+            path, "is CGATS without fields between its marks of DATA_FORMAT; export it again"
+        )
     first, last = _between(path, lines, "DATA", end)
     found = sheets.rows(path, "\n".join(lines[first:last]), " ")
     body = [Row(row.line + first, row.cells) for row in found]

@@ -3,7 +3,7 @@
 from typing import Any
 
 from cutis.moved import moved
-from cutis.textures.atomic import check_outputs, replacing, sweep
+from cutis.textures.atomic import check_writable, replacing, sweep
 from cutis.textures.channels import ChannelFile, channel_writer, read_channels, write_channels
 from cutis.textures.frame import Frame
 from cutis.textures.labels import LabelFile
@@ -11,6 +11,7 @@ from cutis.textures.mask import MaskFile, read_mask
 from cutis.textures.reading import TextureFile, read_texture
 from cutis.textures.spaces import colour_space
 from cutis.textures.texture import Texture, bands
+from cutis.textures.turning import Orientation
 from cutis.textures.writing import format_of, texture_writer, write_texture
 
 __all__ = [
@@ -18,11 +19,12 @@ __all__ = [
     "Frame",
     "LabelFile",
     "MaskFile",
+    "Orientation",
     "Texture",
     "TextureFile",
     "bands",
     "channel_writer",
-    "check_outputs",
+    "check_writable",
     "colour_space",
     "format_of",
     "read_channels",

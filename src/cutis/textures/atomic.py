@@ -5,7 +5,7 @@ import os
 import re
 import secrets
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 from cutis.errors import CutisError
@@ -20,15 +20,14 @@ _swept: set[Path] = set()
 """Folders in which this process has looked for what others left."""
 
 
-def check_outputs(paths: Iterable[Name]) -> None:
-    """Refuse names that cannot be written, before any work: call it with all names of a result.
+def check_writable(path: Name) -> None:
+    """Refuse a name that cannot be written, before any work.
 
-    Raises CutisError for a name or path that is longer than the system takes, a folder, a folder
-    that is not there, and what is no regular file (a device, a pipe, or a link to one), which would
-    be replaced by one.
+    Raises CutisError for a name or path that is longer than the system takes, a folder, and what is
+    no regular file (a device, a pipe, or a link to one), which would be replaced by one. Its folder
+    may be made later.
     """
-    for path in paths:
-        _target(Path(path))
+    _target(Path(path), made=False)
 
 
 @contextlib.contextmanager
@@ -43,8 +42,8 @@ def replacing(path: Name) -> Iterator[Path]:
         with replacing("report.json") as temporary:
             temporary.write_text(report)
 
-    Raises CutisError as `check_outputs` does, and where the folder is unwritable or the disk is
-    full; an OSError about any other file passes through.
+    Raises CutisError as `check_writable` does, and where the folder is missing or unwritable or the
+    disk is full; an OSError about any other file passes through.
     """
     path = Path(path)
     target, temporary = _target(path)
@@ -73,13 +72,13 @@ def replacing(path: Name) -> Iterator[Path]:
             os.close(held)
 
 
-def _target(path: Path) -> tuple[Path, Path]:
+def _target(path: Path, made: bool = True) -> tuple[Path, Path]:
     """The file that `path` means, links followed, and a temporary name beside it."""
     try:
         target = Path(os.path.realpath(path))
         name = f".{_stem(target)}.{secrets.token_hex(4)}.partial{target.suffix}"
         temporary = target.with_name(name)
-        if not target.parent.is_dir():
+        if made and not target.parent.is_dir():
             raise problem(path, f"the folder {target.parent} does not exist; create it first")
         longest_name = _limit(target.parent, "PC_NAME_MAX", _LONGEST_NAME)
         longest_path = _limit(target.parent, "PC_PATH_MAX", _LONGEST_PATH)

@@ -18,8 +18,10 @@ from cutis.textures.decoding import Decoder
 from cutis.textures.encoding import encoder
 from cutis.textures.frame import Frame, whole_frame
 from cutis.textures.problem import problem
+from cutis.textures.specs import ZIP
 from cutis.textures.texture import bands
 
+_TOGETHER = 8  # rows that are put together at a time, so that they stay in the processor's cache
 Metadata = dict[str, str | float | int]
 Value = str | float | int | tuple[float, ...]
 _INT = range(-(2**31), 2**31)
@@ -80,7 +82,7 @@ def channel_writer(
             oiio.TypeHalf if name in half else oiio.TypeFloat for name in names
         )
     (whole_frame(shape) if frame is None else frame).to(spec)
-    spec.attribute("compression", "zip")
+    spec.attribute("compression", ZIP)
     metadata = metadata or {}
     if len({name.lower() for name in metadata}) < len(metadata):
         raise problem(path, "metadata names must differ by more than upper and lower case")
@@ -100,10 +102,15 @@ def channel_writer(
         def write(part: Mapping[str, NDArray[np.generic]]) -> None:
             rows = len(next(iter(part.values())))
             pixels = np.empty((rows, width, len(names)), kind)
+            with np.errstate(over="ignore"):
+                for top in range(0, rows, _TOGETHER):
+                    some = slice(top, top + _TOGETHER)
+                    for column, name in enumerate(names):
+                        pixels[some, :, column] = part[name][some]
             for column, name in enumerate(names):
-                with np.errstate(over="ignore"):
-                    pixels[..., column] = part[name]
-                if np.isinf(pixels[..., column]).any() and not np.isinf(part[name]).any():
+                if part[name].dtype.itemsize > kind.itemsize and _overflows(
+                    pixels[..., column], part[name]
+                ):
                     what = f"channel {name} has values too large for {dtype}; use float"
                     raise problem(path, what)
             sink.write(pixels)
@@ -115,13 +122,14 @@ class ChannelFile(Closing):
     """An open OpenEXR file of named channels (its first part), read some rows at a time.
 
     `names` are its channels, `frame` says where they lie on their picture, `metadata` what the
-    header says, as text or numbers; other metadata is left out. Raises CutisError, one line that
-    names the file, if it cannot be read or is no OpenEXR file. Close it, or use it in a with block.
+    header says, as text or numbers; other metadata is left out. With `shown` its rows are those of
+    the picture, 0 where nothing is stored. Raises CutisError, one line that names the file, if it
+    cannot be read or is no OpenEXR file. Close it, or use it in a with block.
     """
 
-    def __init__(self, path: str | os.PathLike[str]) -> None:
+    def __init__(self, path: str | os.PathLike[str], shown: bool = False) -> None:
         self.path = Path(path)
-        self._source = Decoder(self.path)
+        self._source = Decoder(self.path, shown=shown)
         kind = self._source.file_format
         if kind != "openexr":
             self.close()
@@ -141,10 +149,11 @@ class ChannelFile(Closing):
     def rows(self, rows: slice) -> dict[str, NDArray[np.float32]]:
         """Channels (h, W) by name, float32, of some rows."""
         pixels = self._source.rows(rows)
-        return {
-            name: pixels[..., column].astype(np.float32, order="C")
-            for column, name in enumerate(self.names)
-        }
+        planes = np.empty((pixels.shape[2], *pixels.shape[:2]), np.float32)
+        for top in range(0, len(pixels), _TOGETHER):
+            some = slice(top, top + _TOGETHER)
+            planes[:, some] = np.moveaxis(pixels[some], 2, 0)
+        return dict(zip(self.names, planes, strict=True))
 
 
 def read_channels(path: str | os.PathLike[str]) -> tuple[dict[str, NDArray[np.float32]], Metadata]:
@@ -165,6 +174,11 @@ def _metadata(spec: oiio.ImageSpec) -> Metadata:
             short = float(str(np.float32(value))) if isinstance(value, float) else value
             found[attribute.name] = short
     return found
+
+
+def _overflows(stored: NDArray[np.generic], values: NDArray[np.generic]) -> bool:
+    """Whether values are infinite only since they were stored."""
+    return bool(np.isinf(stored).any() and not np.isinf(values).any())
 
 
 def _is_housekeeping(name: str) -> bool:

@@ -10,7 +10,7 @@ import OpenImageIO as oiio
 from numpy.typing import NDArray
 
 from cutis.textures.closing import Closing
-from cutis.textures.frame import frame_of
+from cutis.textures.frame import Frame, frame_of, placed
 from cutis.textures.headers import Header, image_header
 from cutis.textures.ifd import COMPRESSION, SUB_DIRECTORIES, SUBFILE
 from cutis.textures.limits import check_claim, check_size, check_tile
@@ -60,10 +60,11 @@ class Decoder(Closing):
     asked for, except for formats whose decoders hold a whole image (interlaced PNG, PSD) and for
     pictures that are stored turned. Close it, or use it in a with block.
 
-    Rows are those of the picture as viewers show it: turned as its `orientation` tag says, unless
-    that is to be ignored. `frame` says where texels lie on it, `spec` is the header as it would be
-    of an upright picture, `notes` say in words what was done. Of several pictures in the file the
-    first full-size one that is `usable` is read.
+    Rows are those of the picture as viewers show it: turned as its orientation tag says (`turned`,
+    1 for not at all), unless that is to be ignored. `frame` says where texels lie on it, `spec` is
+    the header as it would be of an upright picture, `notes` say in words what was done. Of several
+    pictures in the file the first full-size one that is `usable` is read. With `shown` the rows are
+    those of the whole picture (the display window), 0 where nothing is stored.
 
     Raises CutisError, in one line, for a file that is missing or not whole, too large, deep, CMYK,
     or of a sample type that cannot be kept; what is not whole may show only at the rows concerned.
@@ -74,6 +75,7 @@ class Decoder(Closing):
         path: Path,
         orientation: Orientation = "auto",
         usable: Callable[[oiio.ImageSpec], bool] = lambda _: True,
+        shown: bool = False,
     ) -> None:
         self.path = path
         self.header = image_header(path)
@@ -86,6 +88,7 @@ class Decoder(Closing):
             raise _unreadable(path, pending_error(), self.header)
         self._source = source
         self._whole: NDArray[np.generic] | None = None
+        self._placed: Frame | None = None
         try:
             self.part, self.notes = chosen_part(source, self.header, usable)
             self._stored: oiio.ImageSpec = source.spec().copy()
@@ -93,6 +96,8 @@ class Decoder(Closing):
             self.stored_as = _check(path, self._stored, self.header, self.part)
             _check_claim(path, self.file_format, self._stored, self.stored_as)
             self._turn(orientation)
+            if shown:
+                self._show()
         except UnicodeError as cause:
             self.close()
             raise problem(path, "is damaged: a name in it is not text; export it again") from cause
@@ -103,15 +108,23 @@ class Decoder(Closing):
     def _turn(self, orientation: Orientation) -> None:
         """Decides how the picture is turned, and describes it."""
         stored = self._stored
-        self.orientation = 1
         number, notes = orientation_of(stored, self.header, self.part, orientation)
         self.notes += notes
         self.spec = stored if number == 1 else turned(stored, number)
-        self.orientation = number
+        self.turned = number
         self.frame = frame_of(self.spec, self.file_format)
         together = int(stored.get_int_attribute("oiio:RowsPerChunk", 1))
         self.step = stored.tile_height or min(max(1, together), stored.height)
         if number != 1:
+            self.step = 1
+
+    def _show(self) -> None:
+        """Makes the picture of what is stored."""
+        if not self.frame.whole:
+            check_size(self.path, self.frame.display[1], self.frame.display[0])
+            self._placed, self.frame = self.frame, self.frame.shown
+            self.spec = self.spec.copy()
+            self.frame.to(self.spec)
             self.step = 1
 
     def close(self) -> None:
@@ -136,12 +149,20 @@ class Decoder(Closing):
         top, bottom, _ = rows.indices(self.spec.height)
         if bottom <= top:
             return np.empty((0, self.spec.width, self.spec.nchannels), self.dtype)
-        if self.orientation == 1:
+        if self._placed is not None:
+            return placed(self._some, self._placed, self.frame, rows)
+        if self.turned == 1:
             return self._rows(top, bottom)
         if self._whole is None:
             check_memory(self.path, self._stored, self.stored_as)
             self._whole = self._rows(0, self._stored.height)
-        return np.ascontiguousarray(upright(self._whole, self.orientation)[top:bottom])
+        return np.ascontiguousarray(upright(self._whole, self.turned)[top:bottom])
+
+    def _some(self, rows: slice) -> NDArray[np.generic]:
+        """Rows of the data window, which may be none."""
+        if rows.stop > rows.start:
+            return self._rows(rows.start, rows.stop)
+        return np.empty((0, self._stored.width, self._stored.nchannels), self.dtype)
 
     def _rows(self, top: int, bottom: int) -> NDArray[np.generic]:
         """Rows as they are stored."""

@@ -4,6 +4,7 @@ OpenEXR stores a data window, anywhere about the display window, which is the pi
 store the picture.
 """
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -13,6 +14,7 @@ import OpenImageIO as oiio
 from numpy.typing import NDArray
 
 Rows = Callable[[slice], NDArray[Any]]
+_WHOLE = re.compile(r"-?\d{1,7}")
 
 
 @dataclass(frozen=True)
@@ -44,6 +46,10 @@ class Frame:
         inside = self.top < self.display[0] and self.left < self.display[1]
         return inside and min(ends) > 0
 
+    def note(self) -> str:
+        """The same in words of a header, which `noted_frame` reads."""
+        return " ".join(map(str, (self.top, self.left, *self.display)))
+
     def to(self, spec: oiio.ImageSpec, x: int = 0, y: int = 0) -> None:
         """Sets the windows of a header; the picture begins at `x`, `y`."""
         spec.full_x, spec.full_y, spec.full_z = x, y, 0
@@ -56,6 +62,16 @@ class Frame:
 def whole_frame(shape: tuple[int, int]) -> Frame:
     """The frame of a picture that is stored as it is."""
     return Frame(shape, shape)
+
+
+def noted_frame(text: str, shape: tuple[int, int]) -> Frame:
+    """The frame of an image of `shape` that a note tells of; all of its picture without one."""
+    numbers = text.split()
+    if len(numbers) == 4 and all(_WHOLE.fullmatch(number) for number in numbers):
+        top, left, height, width = map(int, numbers)
+        if min(height, width) > 0:
+            return Frame(shape, (height, width), top, left)
+    return whole_frame(shape)
 
 
 def frame_of(spec: oiio.ImageSpec, file_format: str) -> Frame:

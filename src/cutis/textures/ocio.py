@@ -1,7 +1,9 @@
 """Colour spaces of OpenColorIO configurations: names, aliases and roles."""
 
+import contextlib
 import hashlib
 import os
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
@@ -117,22 +119,34 @@ def ocio_space(name: str, config: str | None = None) -> Space | None:
             f"{config} needs OpenColorIO: pip install opencolorio, or do without $OCIO and --ocio"
         ) from None
     known = _config(config or BUILT_IN)
-    space = known.getColorSpace(name)
-    if space is None:
-        return None
-    if space.isData():
-        raise CutisError(f"{space.getName()} holds data, not colour; name a colour space")
-    connection, here = _connection(known, config or BUILT_IN)
-    check_lookups(known, config or BUILT_IN, (space.getName(), here))
+    with _in_one_line(f"{config or BUILT_IN}: not a usable OpenColorIO configuration"):
+        space = known.getColorSpace(name)
+        if space is None:
+            return None
+        if space.isData():
+            raise CutisError(f"{space.getName()} holds data, not colour; name a colour space")
+        connection, here = _connection(known, config or BUILT_IN)
+        check_lookups(known, config or BUILT_IN, (space.getName(), here))
     lossless = ocio.OPTIMIZATION_LOSSLESS
-    try:
+    with _in_one_line(f"{name}: OpenColorIO cannot convert it both ways"):
         to = known.getProcessor(space.getName(), here).getOptimizedCPUProcessor(lossless)
         back = known.getProcessor(here, space.getName()).getOptimizedCPUProcessor(lossless)
-    except (ocio.Exception, ocio.ExceptionMissingFile) as error:
-        reason = shorten(str(error).splitlines()[0])
-        raise CutisError(f"{name}: OpenColorIO cannot convert it both ways ({reason})") from error
-    found = OcioSpace(space.getName(), True, to, back, connection, config)
-    return _ours(found) or _described(found)
+        found = OcioSpace(space.getName(), True, to, back, connection, config)
+        with np.errstate(all="ignore"):  # of spaces that make no sense
+            return _ours(found) or _described(found)
+
+
+@contextlib.contextmanager
+def _in_one_line(what: str) -> Iterator[None]:
+    """Whatever the library and its parsers raise, as a CutisError that begins with `what`."""
+    try:
+        yield
+    except CutisError:
+        raise
+    except Exception as error:
+        said = "text that is not UTF-8" if isinstance(error, UnicodeError) else str(error)
+        reason = shorten(next(iter(said.splitlines()), type(error).__name__))
+        raise CutisError(f"{what} ({reason})") from error
 
 
 def _ours(found: OcioSpace) -> RGBSpace | None:
@@ -170,9 +184,11 @@ def ocio_names(config: str | None = None) -> tuple[list[str], list[str]]:
         known = _config(config or BUILT_IN)
     except ImportError:
         return [], []
-    spaces = [space for space in known.getColorSpaces() if not space.isData()]
-    aliases = [alias for space in spaces for alias in space.getAliases()]
-    return [space.getName() for space in spaces], [*aliases, *(r for r, _ in known.getRoles())]
+    with _in_one_line(f"{config or BUILT_IN}: not a usable OpenColorIO configuration"):
+        spaces = [space for space in known.getColorSpaces() if not space.isData()]
+        aliases = [alias for space in spaces for alias in space.getAliases()]
+        roles = [role for role, _ in known.getRoles()]
+        return [space.getName() for space in spaces], [*aliases, *roles]
 
 
 def _connection(known: Any, config: str) -> tuple[RGBSpace, str]:
@@ -191,9 +207,11 @@ def _connection(known: Any, config: str) -> tuple[RGBSpace, str]:
 def _config(path: str) -> Any:
     import PyOpenColorIO as ocio
 
+    what = f"{path}: not a usable OpenColorIO configuration"
     try:
         check_config_file(path)
+    except CutisError as error:
+        raise CutisError(f"{what} ({str(error).removeprefix(f'{path}: ')})") from error
+    ocio.SetLoggingLevel(ocio.LOGGING_LEVEL_NONE)  # what matters is raised
+    with _in_one_line(what):
         return ocio.Config.CreateFromFile(path)
-    except (ocio.Exception, ocio.ExceptionMissingFile, CutisError, UnicodeError) as error:
-        text = shorten(str(error).removeprefix(f"{path}: ").splitlines()[0])
-        raise CutisError(f"{path}: not a usable OpenColorIO configuration ({text})") from error

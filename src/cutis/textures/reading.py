@@ -28,8 +28,9 @@ class TextureFile(Closing):
     """An open texture: what its header says, and its rows on demand.
 
     See `read_texture` for what is read and how, and for errors, which may show only at the rows
-    concerned. `notes` say in words what was chosen or not believed. Close it, or use it in a with
-    block.
+    concerned. `notes` say in words what was chosen or not believed. With `shown` the rows of an
+    OpenEXR are those of its display window, 0 where nothing is stored. Close it, or use it in a
+    with block.
     """
 
     def __init__(
@@ -38,9 +39,10 @@ class TextureFile(Closing):
         colorspace: str | Space = "auto",
         ocio: str | None = None,
         orientation: Orientation = "auto",
+        shown: bool = False,
     ) -> None:
         self.path, self.orientation = Path(path), orientation
-        self._source = Decoder(self.path, orientation, has_colour)
+        self._source = Decoder(self.path, orientation, has_colour, shown)
         try:
             self._describe(colorspace, ocio)
         except ValueError as error:
@@ -51,7 +53,7 @@ class TextureFile(Closing):
         spec, path = self._source.spec, self.path
         self.spec: oiio.ImageSpec = spec
         self.format = self._source.file_format
-        self.frame = self._source.frame
+        self.frame, self.turned = self._source.frame, self._source.turned
         self.shape = self._source.shape
         self.notes = list(self._source.notes)
         self.channels = tuple(spec.channelnames)
@@ -74,6 +76,9 @@ class TextureFile(Closing):
         else:
             given = colour_space(colorspace, ocio) if isinstance(colorspace, str) else colorspace
             self.space, self.origin = given, "given"
+            config = getattr(given, "config", None)
+            if config:
+                self.notes.append(f"its colour space {given.name} is that of {config}")
 
     def close(self) -> None:
         """Lets go of the file."""
@@ -91,7 +96,7 @@ class TextureFile(Closing):
             check_finite(self.path, pixels[..., column : column + 1], top)
         return Texture(
             pixels, self.channels, self.space, self.path, self.spec, self.format, self.associated,
-            self.origin, self._source.orientation,
+            self.origin, self._source.turned, self.orientation,
         )  # fmt: skip
 
     def read(self) -> Texture:

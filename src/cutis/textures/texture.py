@@ -14,6 +14,7 @@ from cutis.colour.transfer import decode_srgb
 from cutis.errors import CutisError
 from cutis.textures.frame import Frame, frame_of, whole_frame
 from cutis.textures.problem import shorten
+from cutis.textures.turning import Orientation
 
 STORED_TYPES = ("uint8", "uint16", "float16", "float32")
 _BAND = 1 << 19  # texels at a time: about 50 MB of temporaries
@@ -29,9 +30,9 @@ class Texture:
     them one set of R, G, B, found by name (`diffuse.R` counts where it is the only set). `space` is
     the colour space of the stored values and `origin` says in words how it is known. `spec`
     holds the metadata of the file it came from and `format` OpenImageIO's name of that format.
-    `associated` says that stored colour is multiplied by alpha, `orientation` how the file has the
-    picture turned, as Exif numbers it; `pixels` are upright. Raises CutisError if these do not fit
-    together.
+    `associated` says that stored colour is multiplied by alpha, `turned` how the file has the
+    picture turned, as Exif numbers it, while `pixels` are upright, and `orientation` whether its
+    tag counted. Raises CutisError if these do not fit together.
     """
 
     pixels: NDArray[np.generic]
@@ -42,7 +43,8 @@ class Texture:
     format: str | None = None
     associated: bool = False
     origin: str = "given"
-    orientation: int = 1
+    turned: int = 1
+    orientation: Orientation = "auto"
 
     def __post_init__(self) -> None:
         if self.pixels.ndim != 3 or self.pixels.shape[2] != len(self.channels):

@@ -110,10 +110,10 @@ class TextureWriter:
     def write(self, part: Texture) -> None:
         """The next rows, from top to bottom."""
         pixels = _fitted(part, self._format, self._space).pixels
-        if part.orientation != 1 and part.format == self._format:
+        if part.turned != 1 and part.format == self._format:
             self._turned.append(pixels)
             if sum(map(len, self._turned)) == self._frame.shape[0]:
-                self._sink.write(as_stored(np.concatenate(self._turned), part.orientation))
+                self._sink.write(as_stored(np.concatenate(self._turned), part.turned))
             return
         if self._frame == self._into:
             self._sink.write(pixels)

@@ -2,12 +2,13 @@
 
 from typing import Any
 
+import numba.cuda
 import numpy as np
-from numba import cuda
 from numpy.typing import NDArray
 
 from cutis.transport.history import make_history
 
+cuda: Any = numba.cuda  # whose names are made at run time
 BLOCK = 64
 """Photons of one thread."""
 THREADS = 128
@@ -16,12 +17,12 @@ MOST_LAYERS = 14
 _history = make_history(cuda.jit(device=True))
 
 
-@cuda.jit
+@cuda.jit  # type: ignore[untyped-decorator]
 def _kernel(
     stacks: Any, streams: Any, key: Any, first: Any, stop: Any,
     dimension: Any, index: Any, incidence: Any, sums: Any, squares: Any
 ) -> None:  # fmt: skip
-    task = cuda.grid(1)  # type: ignore[call-arg, var-annotated]
+    task = cuda.grid(1)
     cases, scored = stacks.shape[0], sums.shape[2]
     if task >= sums.shape[0] * cases:
         return

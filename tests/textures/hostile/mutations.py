@@ -4,6 +4,7 @@ Plain damage does not know the format. Damage that does gets further into the de
 checksums made right again, fields of TIFF directories, values of OpenEXR attributes and offsets.
 """
 
+import re
 import struct
 import zlib
 from collections.abc import Callable
@@ -22,6 +23,8 @@ _NUMBERS = (
 def mutate(content: bytes, other: bytes, random: Random) -> tuple[str, bytes]:
     """What was done, and `content` after it; `other` is a file to take pieces from."""
     kinds = list(_PLAIN.items())
+    if b"\0" not in content[:2000]:
+        kinds += list(_TEXT.items()) * 3
     for magic, own in _OWN.items():
         if content.startswith(magic):
             kinds += list(own.items()) * 3
@@ -92,6 +95,58 @@ _PLAIN: dict[str, Callable[[bytes, bytes, Random], bytes]] = {
     "splice": _splice,
     "move": _move,
 }
+
+
+# What stands in texts where numbers and words should be.
+_WORDS = (
+    *b"0 1 -1 1e999 -1e-999 nan inf 9999999999999999999 0x10 1_0 1,5 1.5.5 +-3 99999".split(),
+    *(b"", b"=1+1", b"#", b'"', b"'", b"{", b"}", b"[", b"]", b"..", b"/dev/zero", b"../../x"),
+    *(b"\0", b"\x1b[2J", b"\xff\xfe", b"\xe2\x80\xae", b"\xed\xb3\xa8", b"\xf0\x9f\x99\x82"),
+    *(b"wavelength", b"nm", b"%", b"ENVI", b"BEGIN_DATA", b"sep=;", b"bsq", b"&a *a", b"2147483"),
+    *(b"9" * 400, b"A" * 70_000, b"[" * 5000, b"{a: " * 2000, b"-" * 4000),
+)  # fmt: skip
+_PIECES = re.compile(rb"[\w.+-]+|[^\w\s]")
+
+
+def _word(content: bytes, other: bytes, random: Random) -> bytes:
+    """Words and numbers of a text replaced by others."""
+    out = content
+    for _ in range(random.choice((1, 1, 2, 5))):
+        places = [m.span() for m in _PIECES.finditer(out[:20_000])]
+        if not places:
+            return out
+        start, end = random.choice(places)
+        out = out[:start] + random.choice(_WORDS) + out[end:]
+    return out
+
+
+def _line(content: bytes, other: bytes, random: Random) -> bytes:
+    """Lines of a text removed, doubled, moved, or taken from another text."""
+    lines = content.split(b"\n")
+    at, how = random.randrange(len(lines)), random.randrange(6)
+    if how == 0:
+        lines.pop(at)
+    elif how == 1:
+        lines[at:at] = [lines[at]] * random.choice((1, 2, 300))
+    elif how == 2:
+        random.shuffle(lines)
+    elif how == 3 and b"\0" not in other[:2000]:
+        lines.insert(at, random.choice(other.split(b"\n"))[:5000])
+    elif how == 4:
+        lines[at] = lines[at] + random.choice(_WORDS)
+    else:
+        lines = [line.replace(b",", random.choice((b";", b"\t", b" ", b",,"))) for line in lines]
+    return random.choice((b"\n", b"\n", b"\n", b"\r", b"\r\n")).join(lines)
+
+
+_TEXT: dict[str, Callable[[bytes, bytes, Random], bytes]] = {"word": _word, "line": _line}
+
+
+def _npy_header(content: bytes, other: bytes, random: Random) -> bytes:
+    """The header of a NumPy array, its length right."""
+    length = struct.unpack("<H", content[8:10])[0]
+    header = random.choice((_word, _flip, _truncate))(content[10 : 10 + length], other, random)
+    return content[:8] + struct.pack("<H", len(header) % 65536) + header + content[10 + length :]
 
 
 def _png_chunks(content: bytes) -> list[tuple[bytes, bytes]]:
@@ -348,4 +403,5 @@ _OWN: dict[bytes, dict[str, Callable[[bytes, bytes, Random], bytes]]] = {
     b"SDPX": {"dpx field": _fields(_DPX)},
     b"XPDS": {"dpx field": _fields(_DPX)},
     b"8BPS": {"psd field": _fields(_PSD)},
+    b"\x93NUMPY": {"npy header": _npy_header},
 }

@@ -25,7 +25,7 @@ MOST_MEMORY = 1.5 * 2**30
 ADDRESSES = 24 * 2**30  # so that no reader brings the machine down
 SECONDS = 10.0
 _LONGEST = 600  # characters of a message
-_ESTIMATE_SECONDS = 120.0  # the whole command, its start among it, on a busy machine
+_COMMAND_SECONDS = 120.0  # the whole command, its start among it, on a busy machine
 
 
 @dataclass
@@ -47,7 +47,7 @@ class Reader:
     """A process that reads; started again when it dies or hangs."""
 
     def __init__(self, how: str = "read") -> None:
-        """`how` is "read" (by the library) or "estimate" (by the command)."""
+        """`how` is "read" (by the library) or "command" (by the command line)."""
         self._how = how
         self._process: subprocess.Popen[str] | None = None
 
@@ -81,7 +81,7 @@ class Reader:
         assert process.stdin is not None
         start = time.monotonic()
         print(path, file=process.stdin, flush=True)
-        line = self._answer(SECONDS if self._how == "read" else _ESTIMATE_SECONDS)
+        line = self._answer(SECONDS if self._how == "read" else _COMMAND_SECONDS)
         seconds = time.monotonic() - start
         if line is None:
             self.close(kill=True)
@@ -153,8 +153,18 @@ def _mask(path: Path) -> Any:
     from cutis.textures.decoding import Decoder
 
     with Decoder(path) as source:
-        shape = source.shape
-    return read_mask(path, shape)
+        frame = source.frame
+    return read_mask(path, frame)
+
+
+def _labels(path: Path) -> Any:
+    from cutis.textures import LabelFile
+    from cutis.textures.decoding import Decoder
+
+    with Decoder(path) as source:
+        frame = source.frame
+    with LabelFile(path, frame) as file:
+        return file.rows(slice(None))
 
 
 def _skin(path: Path) -> Any:
@@ -163,17 +173,97 @@ def _skin(path: Path) -> Any:
     from cutis.maps import load_maps
 
     skin = load_maps(path)
-    return np.stack([skin.melanin, skin.oxygenation])
+    return np.stack([skin.map("melanin"), skin.map("oxygenation")])
+
+
+def _table(path: Path) -> Any:
+    import numpy as np
+
+    from cutis.spectra import open_table
+
+    table = open_table(path)
+    factor, _ = table.scale(np.ones(len(table.wavelengths), bool))
+    return table.values * factor
+
+
+def _cube(path: Path) -> Any:
+    from cutis.spectra import open_cube
+    from cutis.spectra.reflectance import fraction_scale
+
+    with open_cube(path) as cube:
+        fraction_scale(cube.path, cube.sample(), cube.scale)
+        return cube.rows(slice(0, 64))
+
+
+def _list(path: Path) -> Any:
+    from cutis.spectra.wavelengths import read_wavelengths
+
+    return read_wavelengths(path)[0]
+
+
+def _skins(path: Path) -> Any:
+    from cutis.jobs.spectrum import read_skins
+    from cutis.optics import RARE_NAMES
+
+    return read_skins(path, RARE_NAMES)[2]
+
+
+def _space(path: Path) -> Any:
+    """Spaces of a configuration, or of the one beside a look-up table."""
+    import numpy as np
+
+    from cutis.errors import CutisError
+    from cutis.textures import ocio
+
+    config = path if path.suffix == ".ocio" else path.with_name("show.ocio")
+    for cache in (ocio.ocio_space, ocio._config):
+        cache.cache_clear()
+    steps, found = np.linspace(0, 1, 12, dtype=np.float32).reshape(4, 3), []
+    for name in ("power", "group", "cam"):
+        try:
+            space = ocio.ocio_space(name, str(config))
+        except CutisError as error:
+            if path.name in str(error) or name in str(error):  # one file or the other is named
+                raise CutisError(f"{path.name}: {error}") from error
+            raise
+        found.append(steps if space is None else space.to_linear_srgb(steps))
+    return np.stack(found)
+
+
+_IMAGE = {"texture": _texture, "mask": _mask, "labels": _labels}
+WAYS: dict[str, dict[str, Callable[[Path], Any]]] = {
+    **dict.fromkeys((".png", ".jpg", ".tif", ".tx", ".dpx", ".psd"), _IMAGE),
+    ".exr": {**_IMAGE, "maps": _skin, "cube": _cube},
+    **{key: {"table": _table, "list": _list, "skins": _skins} for key in (".csv", ".tsv", ".txt")},
+    **{key: {"cube": _cube, "table": _table} for key in (".hdr", ".img")},
+    ".sli": {"table": _table},
+    ".npy": {"cube": _cube, "list": _list},
+    **{key: {"space": _space} for key in (".ocio", ".cube", ".spi1d", ".spi3d", ".clf", ".csp")},
+}
+"""How files are read, by their extensions: each way gives an array, or raises CutisError in one
+line. Other parsers of foreign bytes are to be added here, and their seeds to `seeds.py`.
+"""
+
+
+def command_for(path: Path, out: Path) -> list[str]:
+    """The command that a user would give such a file; its results go to the folder `out`."""
+    if path.name.endswith(".skin.exr"):
+        return ["info", str(path)]
+    if path.suffix in (".csv", ".tsv", ".txt"):
+        return ["fit", str(path)]
+    if path.suffix in (".hdr", ".img", ".sli", ".npy"):
+        return ["fit", str(path), "-o", str(out / "x.skin.exr")]
+    if path.suffix in WAYS and WAYS[path.suffix] is not WAYS[".ocio"]:
+        return ["estimate", str(path), "-o", str(out)]
+    config = path if path.suffix == ".ocio" else path.with_name("show.ocio")
+    return ["estimate", "face.png", "--ocio", str(config), "--colorspace", "cam", "-o", str(out)]
 
 
 def _read(path: Path) -> Outcome:
     from cutis.errors import CutisError
 
     outcome = Outcome()
-    ways = {"texture": _texture, "mask": _mask}
-    if path.suffix == ".exr":
-        ways["maps"] = _skin
-    for name, way in ways.items():
+    for name, way in WAYS[path.suffix].items():
         try:
             values = way(path)
             outcome.results[name] = hashlib.sha256(values.tobytes()).hexdigest()
@@ -186,14 +276,14 @@ def _read(path: Path) -> Outcome:
                 outcome.findings.append(f"lines {error}")
             elif len(str(error)) > _LONGEST:
                 outcome.findings.append(f"long {error}")
-            elif path.name not in str(error):
+            elif path.stem not in str(error):  # of a pair the other may be named
                 outcome.findings.append(f"no name {error}")
         except BaseException as error:
             outcome.findings.append(f"traceback {name}: {type(error).__name__}: {error}")
     return outcome
 
 
-def _estimate(path: Path) -> Outcome:
+def _command(path: Path) -> Outcome:
     """The whole command in a fork, with a folder of its own."""
     outcome = Outcome()
     with tempfile.TemporaryDirectory() as name:
@@ -204,7 +294,9 @@ def _estimate(path: Path) -> Outcome:
 
             for stream, file in ((1, said), (2, told)):
                 os.dup2(os.open(file, os.O_CREAT | os.O_WRONLY | os.O_APPEND, 0o600), stream)
-            sys.argv = ["cutis", "estimate", str(path), "-o", str(out)]
+            sys.argv = ["cutis", *command_for(path, out)]
+            if sys.argv[1] == "fit":
+                out.mkdir()
             code = 99
             try:
                 main()
@@ -221,22 +313,24 @@ def _estimate(path: Path) -> Outcome:
         _, status = os.waitpid(child, 0)
         code, errors = os.waitstatus_to_exitcode(status), told.read_text(errors="replace")
         files = sorted(file.name for file in out.iterdir()) if out.is_dir() else []
-        outcome.results["estimate"] = errors if code else ", ".join(files)
-        outcome.good["estimate"] = code == 0
+        outcome.results["command"] = errors if code else ", ".join(files)
+        outcome.good["command"] = code == 0
         if code not in (0, 1):
             outcome.findings.append(f"command exit {code}: {errors[:300]}")
-        if code and (
-            len(errors.splitlines()) != 1
-            or not errors[:-1].isprintable()
-            or not errors.startswith("cutis: ")
+        lines = errors.splitlines()
+        if any(not line.isprintable() for line in lines) or (
+            code and (len(lines) != 1 or not errors.startswith("cutis: "))
         ):
-            outcome.findings.append(f"printed {errors[:300]!r}")
-        if code == 0 and errors:
             outcome.findings.append(f"printed {errors[:300]!r}")
         if code and (files or said.read_text(errors="replace")):
             outcome.findings.append(f"partial output {files}")
-        if code == 0 and len(files) != 9:
-            outcome.findings.append(f"partial output {files}")
+        if any(".partial" in file for file in files):
+            outcome.findings.append(f"left over {files}")
+        reports = [file for file in files if file.endswith(".report.json")]
+        for report in reports:
+            listed = json.loads((out / report).read_text())["files"]
+            if sorted([*listed, report]) != files:
+                outcome.findings.append(f"partial output {files}")
     return outcome
 
 
@@ -248,12 +342,13 @@ def _serve(how: str) -> None:
     import cutis.maps
     import cutis.textures
 
-    if how == "estimate":
+    if how == "command":
         import cutis.apps.main
         import cutis.jobs.estimate
+        import cutis.jobs.fit
 
         cutis.maps.load_model()  # imported, nothing run: a fork cannot take threads on
-    read = _read if how == "read" else _estimate
+    read = _read if how == "read" else _command
     print("ready", file=answers, flush=True)
     for line in sys.stdin:
         _reset_peak()

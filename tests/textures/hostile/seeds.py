@@ -55,8 +55,15 @@ def write(path: Path, values: np.ndarray, names: str = "", tile: int = 0, **attr
     return path
 
 
+def all_seeds(folder: Path) -> list[Path]:
+    """Pictures, maps, and what is no picture, each in a folder of its kind."""
+    from hostile.other_seeds import other_seeds
+
+    return [*seeds(folder / "pictures"), *other_seeds(folder / "others")]
+
+
 def seeds(folder: Path) -> list[Path]:
-    """Writes all seed files into `folder`; the same files every time."""
+    """Writes all seed files of pictures and maps into `folder`; the same files every time."""
     global _RNG
     _RNG = np.random.default_rng(7)
     folder.mkdir(parents=True, exist_ok=True)

@@ -1,16 +1,20 @@
-"""Damages small image files of every kind and reads them: nothing may crash, hang or print.
+"""Damages small files of every kind and reads them: nothing may crash, hang or print.
 
-    python -m studies.fuzz_textures --count 10000 --seed 1
+    python -m studies.fuzz --count 10000 --seed 1
+    python -m studies.fuzz --count 3000 --only .npy --only .csv
 
-Each file goes through `read_texture`, `read_mask` and, where it is OpenEXR, `load_maps`, in a
-process of its own that may die of it; every fiftieth through `cutis estimate`. What goes wrong is
-kept in the folder `--findings`, as a file and a line in findings.txt. Ends in 1 if anything did.
+Pictures go through `read_texture`, `read_mask`, `LabelFile` and, where they are OpenEXR, the
+readers of maps and cubes; tables, lists, skins, ENVI, NPY and configurations of OpenColorIO through
+theirs (`tests/textures/hostile/reader.py` lists the ways), in a process of its own that may die of
+it; every fiftieth through the command that a user would give. What goes wrong is kept in the folder
+`--findings`, as a file and a line in findings.txt. Ends in 1 if anything did.
 """
 
 import argparse
 import json
 import queue
 import shutil
+import subprocess
 import sys
 import tempfile
 import threading
@@ -24,9 +28,19 @@ sys.path[:0] = [str(ROOT / "tests" / "textures"), str(ROOT / "src")]
 
 from hostile.mutations import mutate  # noqa: E402
 from hostile.reader import Outcome, Reader  # noqa: E402
-from hostile.seeds import seeds  # noqa: E402
+from hostile.seeds import all_seeds  # noqa: E402
 
-ESTIMATED = 50
+COMMANDED = 50
+
+
+PICTURES = (".png", ".jpg", ".tif", ".tx", ".exr", ".dpx", ".psd")
+LOOKUPS = (".ocio", ".cube", ".spi1d", ".spi3d", ".clf", ".csp")
+PAIRED = (".hdr", ".img", ".sli", ".npy", *LOOKUPS)
+
+
+WARM = "import sys, tempfile; from cutis.apps.main import main; "
+WARM += "sys.argv[1:] = ['estimate', sys.argv[1], '-q', '-o', tempfile.mkdtemp()]; main()"
+"""Compiles what commands need before anything is timed."""
 
 
 class Run:
@@ -53,9 +67,13 @@ class Run:
             for what in outcome.findings:
                 self.found[f"{path.suffix[1:]}: {' '.join(what.split()[:2])}"] += 1
                 self.folder.mkdir(parents=True, exist_ok=True)
-                shutil.copy(path, self.folder / path.name)
+                shutil.copy(path, self.folder / f"{path.parent.name}-{path.name}")
                 with (self.folder / "findings.txt").open("a") as lines:
-                    line = {"file": path.name, "damage": damage, "what": what}
+                    line = {
+                        "file": f"{path.parent.name}-{path.name}",
+                        "damage": damage,
+                        "what": what,
+                    }
                     print(json.dumps(line), file=lines)
 
     def report(self) -> str:
@@ -69,11 +87,24 @@ class Run:
         return "\n".join(lines)
 
 
+def placed(origin: Path, folder: Path) -> Path:
+    """Where to put a damaged copy: in a folder with whatever lies beside the original."""
+    folder.mkdir()
+    name = f"{folder.name}-{origin.name.replace('.skin', '-skin')}"
+    beside = [path for path in origin.parent.iterdir() if path.is_file() and path != origin]
+    if origin.suffix in PAIRED:
+        name = origin.name
+        partners = [path for path in beside if path.name.split(".")[0] == origin.name.split(".")[0]]
+        for path in beside if origin.suffix in LOOKUPS else partners:
+            shutil.copy(path, folder / path.name)
+    return folder / name
+
+
 def work(
     numbers: "queue.SimpleQueue[int]", whole: list[Path], scratch: Path, seed: int, run: Run
 ) -> None:
     """Damages and reads until no numbers are left."""
-    readers = {how: Reader(how) for how in ("read", "estimate")}
+    readers = {how: Reader(how) for how in ("read", "command")}
     originals: dict[Path, Outcome] = {}
     kinds = [
         [path for path in whole if path.suffix == suffix]
@@ -87,21 +118,21 @@ def work(
         random = Random(f"{seed}:{number}")
         origin, other = random.choice(random.choice(kinds)), random.choice(random.choice(kinds))
         damage, content = mutate(origin.read_bytes(), other.read_bytes(), random)
-        path = scratch / f"{seed}-{number}-{origin.name.replace('.skin', '-skin')}"
+        path = placed(origin, scratch / f"{seed}-{number}")
         path.write_bytes(content)
         outcome = readers["read"].read(path)
-        if damage == "truncate":
+        if damage == "truncate" and path.suffix in PICTURES:
             if origin not in originals:
                 originals[origin] = readers["read"].read(origin)
             for way, good in outcome.good.items():
                 if good and outcome.results[way] != originals[origin].results[way]:
                     outcome.findings.append(f"partial {way}")
-        if number % ESTIMATED == 0:
-            command = readers["estimate"].read(path)
+        if number % COMMANDED == 0:
+            command = readers["command"].read(path)
             outcome.findings += command.findings
             outcome.good |= command.good
         run.count(path, damage, outcome)
-        path.unlink()
+        shutil.rmtree(path.parent)
     for reader in readers.values():
         reader.close()
 
@@ -113,12 +144,18 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--start", type=int, default=0, help="number of the first file")
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--only", default="", help="part of the names of the seed files")
+    parser.add_argument("--only", action="append", help="part of the names of the seed files")
     parser.add_argument("--findings", type=Path, default=Path("fuzz-findings"))
     args = parser.parse_args()
     run, start = Run(args.findings), time.monotonic()
+    first = ROOT / "src" / "cutis" / "data" / "heads" / "leeperrysmith_color.jpg"
+    subprocess.run([sys.executable, "-c", WARM, str(first)], check=True, capture_output=True)
     with tempfile.TemporaryDirectory() as name:
-        whole = [path for path in seeds(Path(name) / "seeds") if args.only in path.name]
+        whole = [
+            path
+            for path in all_seeds(Path(name) / "seeds")
+            if not args.only or any(part in path.name for part in args.only)
+        ]
         numbers: queue.SimpleQueue[int] = queue.SimpleQueue()
         for number in range(args.start, args.start + args.count):
             numbers.put(number)
