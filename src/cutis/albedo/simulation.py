@@ -81,7 +81,9 @@ class SkinSimulation:
             [tissue.absorption(layer, values, lam) for layer in LAYERS], axis=-1
         ).reshape(-1, 2)
         above = np.tile(tissue.scattering(lam), len(skins))
-        below = np.broadcast_to(tissue.scattering_below(lam, values["eumelanin"]), (len(skins), BANDS))
+        below = np.broadcast_to(
+            tissue.scattering_below(lam, values["eumelanin"]), (len(skins), BANDS)
+        )
         depth = np.repeat(values["thickness"] * 1e-4, BANDS)
         found = walk_stacks(
             absorption,
