@@ -297,7 +297,8 @@ class Tissue:
         if not self.dermis_by_type:
             return self.dermis_scattering * self.reduced_scattering(lam)
         pheo, eu = (at_500 * (lam / 500.0) ** -power for at_500, power in self.dermis_by_type)
-        share = np.asarray(eumelanin, dtype=np.float64)[..., None] if lam.ndim else eumelanin
+        share = np.asarray(eumelanin, dtype=np.float64)
+        share = share[..., None] if lam.ndim else share
         return np.asarray(1.0 / ((1 - share) / pheo + share / eu))
 
     def scattering(self, wavelength: ArrayLike) -> NDArray[np.float64]:
