@@ -20,6 +20,7 @@ ROOMS = (
     "textures",
     "spectra",
     "maps",
+    "looks",
     "luts",
     "report",
     "render",
