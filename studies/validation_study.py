@@ -11,10 +11,9 @@ from cutis.albedo import albedo_space
 from cutis.albedo.sampled import SampledSpace
 from cutis.colour import delta_e, reflectance_to_rgb, spectrum_to_rgb, upsample
 from cutis.colour.observer import wavelengths
-from cutis.inverse import SpectralFitter
+from cutis.inverse import SpectralFitter, load_model
 from cutis.inverse.prior import unit_slopes
 from cutis.inverse.shipped import EXACT
-from cutis.maps import DEFAULT, load_model
 from cutis.optics import (
     ALIAGA2022,
     MEASURED2026,
@@ -31,7 +30,7 @@ TISSUES = (ALIAGA2022, MEASURED2026, MEASURED2026B)
 """Tissues whose fits are told; intervals are judged by the parameters that the last one gives."""
 CALIBRATED = TISSUES[1:]
 JUDGED = TISSUES[-1]
-MODELS = tuple(dict.fromkeys((DEFAULT, *(t.name for t in CALIBRATED), EXACT, "aliaga2022")))
+MODELS = (*(t.name for t in CALIBRATED), EXACT, "aliaga2022")
 PER_BAND = 600
 """Skins of a band of ITA° that a prior of the validation is trained on, at most."""
 FOLDS = 5
@@ -72,7 +71,7 @@ class Study:
     """Spectra by method, from RGB alone."""
     held: dict[str, Held] = field(default_factory=dict)
     loop: Array = field(default_factory=lambda: np.empty(0))
-    """(n,) ΔE00 of the default's closed loop."""
+    """(n,) ΔE00 of the closed loop of the model of JUDGED."""
 
     @property
     def issa(self) -> Array:
@@ -110,10 +109,8 @@ def study(skins: ArchivedSkins, per_band: int = PER_BAND, models: Iterable[str] 
         found.persons[tissue.name] = within_and_between(skins, fit.values)
         found.odd[tissue.name] = every_other(skins, tissue)
     for what, parts in (("origin", skins.origins), ("subject", subject_folds(skins))):
-        for tissue in CALIBRATED:
-            name = f"cutis `{tissue.name}`, {what}s left out"
-            found.implied[name], held = left_out(skins, parts, per_band, what, tissue)
-            found.held[what] = held  # in the end of the one that is judged
+        name = f"{LEARNED}, {what}s left out"
+        found.implied[name], found.held[what] = left_out(skins, parts, per_band, what)
         learned = measured(skins, regression(skins, parts))
         found.implied[f"linear regression, {what}s left out"] = learned
     for name in models:
@@ -122,7 +119,7 @@ def study(skins: ArchivedSkins, per_band: int = PER_BAND, models: Iterable[str] 
         spectra = SampledSpace(albedo_space(model.tissue), BANDS).reflectance(values)
         label = f"cutis `{name}`, as shipped"
         found.implied[label] = measured(skins, spectra)
-        if not len(found.loop):
+        if model.tissue == JUDGED:
             found.loop = delta_e(model.decode(values), colours)
         trust = model.trust(colours)
         if trust is not None and model.tissue == JUDGED:
