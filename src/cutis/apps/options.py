@@ -29,8 +29,8 @@ ModelName = Annotated[
     str,
     typer.Option(
         "--model",
-        help="default, measured2026, measured2026b, aliaga2022-exact, aliaga2022, kubelka-munk, one "
-        "that another package brings, or a .safetensors file of weights.",
+        help="default, measured2026, measured2026b, aliaga2022-exact, aliaga2022, kubelka-munk, "
+        "one that another package brings, or a .safetensors file of weights.",
     ),
 ]
 Method = Annotated[
