@@ -26,7 +26,6 @@ from cutis.albedo import AlbedoSpace, albedo_space
 from cutis.albedo.sampled import SampledSpace
 from cutis.errors import CutisError
 from cutis.optics import (
-    ALIAGA2022,
     NAMES,
     RARE_NAMES,
     WAVELENGTHS,
@@ -79,7 +78,7 @@ class SpectralFitter:
     def __init__(
         self,
         wavelengths: ArrayLike,
-        tissue: Tissue = ALIAGA2022,
+        tissue: Tissue,
         *,
         specular: float = 0.0,
         shift: float = 0.0,
@@ -259,7 +258,7 @@ class SpectralFitter:
 def fit_spectra(
     reflectance: ArrayLike,
     wavelengths: ArrayLike,
-    tissue: Tissue = ALIAGA2022,
+    tissue: Tissue,
     *,
     specular: float = 0.0,
     shift: float = 0.0,
