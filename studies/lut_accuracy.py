@@ -13,9 +13,9 @@ from rich.progress import track
 
 from cutis.colour import delta_e, is_skin_colour
 from cutis.colour.spaces import rgb_space
+from cutis.looks.presets import preset
 from cutis.luts import export_lut
 from cutis.maps import estimate
-from cutis.maps.presets import PRESETS
 from studies.figures.subjects import data_folder, every_face
 from studies.pages import rewrite
 
@@ -41,10 +41,10 @@ def row(kind: str, space_name: str, skin, colours: np.ndarray, folder: Path) -> 
     for name in TRIED[kind]:
         # a name of its own: OpenColorIO remembers files that it has read
         file = Path(tempfile.mkstemp(f".{kind}", dir=folder)[1])
-        export_lut(file, PRESETS[name], space, calibration=skin.calibration)
+        export_lut(file, preset(name), space, calibration=skin.calibration)
         result = space.to_linear_srgb(through(file, space.from_linear_srgb(colours)))
         file.unlink()
-        real = skin.apply(PRESETS[name]).albedo()[0]
+        real = skin.apply(preset(name)).albedo()[0]
         found.append(float(np.percentile(delta_e(result, real), 99)))
     return found
 

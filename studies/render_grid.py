@@ -18,7 +18,7 @@ import cutis
 from cutis.colour import lab
 from cutis.jobs.render import RenderJob
 from cutis.jobs.render import Subject as Shown
-from cutis.maps.presets import PRESETS
+from cutis.looks.presets import preset
 from cutis.render.frames import Frame
 from cutis.render.heads import Head, head
 from cutis.render.scene import Scene
@@ -112,7 +112,7 @@ def main() -> None:
                     zoom=subject.head.zoom, centre=subject.head.centre,
                 )  # fmt: skip
                 frames = [Frame(1), *(
-                    Frame(k, edits=PRESETS[name]) for k, name in enumerate(subject.edits, 2)
+                    Frame(k, edits=preset(name)) for k, name in enumerate(subject.edits, 2)
                 )]  # fmt: skip
                 stem = WORK / f"{subject.albedo}-{light}"
                 shown = Shown(subject.maps, scene)

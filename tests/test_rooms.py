@@ -21,6 +21,7 @@ ROOMS = (
     "textures",
     "spectra",
     "maps",
+    "looks",
     "luts",
     "report",
     "render",

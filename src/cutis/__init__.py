@@ -16,7 +16,8 @@ __version__ = "0.1.0"
 if TYPE_CHECKING:
     from cutis.errors import CutisError
     from cutis.inverse import Calibration, Model, register
-    from cutis.maps import DEFAULT, Edit, SkinMaps, estimate, load_model, presets
+    from cutis.looks import Look, presets
+    from cutis.maps import DEFAULT, Edit, SkinMaps, estimate, load_model
     from cutis.maps import load_skin as load
     from cutis.maps.by_default import albedo_space, explain, fit_spectra, metamers
     from cutis.optics import Tissue
@@ -30,6 +31,7 @@ _WHERE = {
     "Calibration": "cutis.inverse",
     "CutisError": "cutis.errors",
     "Edit": "cutis.maps",
+    "Look": "cutis.looks",
     "Model": "cutis.inverse",
     "SkinMaps": "cutis.maps",
     "Texture": "cutis.textures",
@@ -41,7 +43,7 @@ _WHERE = {
     "load": "cutis.maps:load_skin",
     "load_model": "cutis.maps",
     "metamers": "cutis.maps.by_default",
-    "presets": "cutis.maps.presets:",
+    "presets": "cutis.looks.presets:",
     "read": "cutis.textures:read_texture",
     "read_mask": "cutis.textures",
     "register": "cutis.inverse",
@@ -55,6 +57,7 @@ __all__ = [
     "Calibration",
     "CutisError",
     "Edit",
+    "Look",
     "Model",
     "SkinMaps",
     "Texture",

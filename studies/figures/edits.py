@@ -3,7 +3,7 @@
 import numpy as np
 
 from cutis.colour import lab
-from cutis.maps.presets import PRESETS
+from cutis.looks.presets import preset
 from cutis.report.appearance import displayed
 from studies.figures.layout import grid
 from studies.figures.section import Section, table
@@ -28,7 +28,7 @@ LABELS = {
 def edited(subject: Subject, name: str) -> np.ndarray:
     """(H, W, 3) the calibrated capture with a preset in it."""
     skin = subject.maps
-    return skin.calibration.apply(skin.apply(PRESETS[name]).albedo())
+    return skin.calibration.apply(skin.apply(preset(name)).albedo())
 
 
 def shift(subject: Subject, colours: np.ndarray) -> np.ndarray:

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutis.inverse.shipped import EXACT
-from cutis.maps import presets
+from cutis.looks import presets
 from cutis.report.appearance import displayed
 from studies.figures.layout import grid
 from studies.figures.section import Section, table

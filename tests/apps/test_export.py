@@ -18,10 +18,10 @@ def test_a_lut_is_written(cutis, tmp_path):
     out = tmp_path / "tan.cube"
     ended = cutis("export", out, "--preset", "tanning", "--blood", "x2", "--size", "9")
     assert (ended.code, ended.err) == (0, "")
-    said = "melanin x1.4, eumelanin 0.001, blood x2, for sRGB, 9 nodes a side"
+    said = "tanning: melanin x1.4; tanning: eumelanin 0.001; blood x2, for sRGB, 9 nodes a side"
     assert said in " ".join(ended.out.split())
     lines = out.read_text("utf-8").splitlines()
-    assert lines[0] == "# melanin x1.4, eumelanin 0.001, blood x2, for sRGB"
+    assert lines[0] == f"# {said.removesuffix(', 9 nodes a side')}"
     assert lines[1] == "LUT_3D_SIZE 9"
     assert len(lines) == 2 + 9**3
 

@@ -22,7 +22,7 @@ def rgb_of(roots):
 
 @pytest.fixture(scope="module")
 def inverse():
-    return kubelka_munk_inverse()
+    return kubelka_munk_inverse(SKIN)
 
 
 def test_colours_of_the_surface_come_back(inverse):

@@ -9,11 +9,12 @@ from cutis.colour import delta_e, is_skin_colour
 from cutis.colour.spaces import SPACES, rgb_space
 from cutis.errors import CutisError
 from cutis.inverse import Calibration
+from cutis.looks import presets
 from cutis.luts import export_lut
 from cutis.luts.clf_lut import is_encoded
 from cutis.luts.cube_lut import edit_lut, is_linear, shape, unshape
 from cutis.luts.recolouring import recolouring
-from cutis.maps import estimate, load_model, presets
+from cutis.maps import estimate, load_model
 from studies.figures.subjects import every_face
 
 SRGB = rgb_space("sRGB")

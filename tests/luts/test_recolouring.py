@@ -6,8 +6,9 @@ import pytest
 from cutis.albedo import albedo_space, halton
 from cutis.colour import is_skin_colour
 from cutis.errors import CutisError
+from cutis.looks import presets
 from cutis.luts.recolouring import NONE, WHOLE, fading, recolouring, title
-from cutis.maps import estimate, presets
+from cutis.maps import estimate
 from cutis.optics import ALIAGA2022
 
 
@@ -62,7 +63,9 @@ def test_fading_is_smooth():
 
 
 def test_titles():
-    assert title(presets.tanning, 0.5) == "melanin x1.4, eumelanin 0.001, amount 0.5"
+    assert title(presets.tanning, 0.5) == (
+        "tanning: melanin x1.4, amount 0.5; tanning: eumelanin 0.001, amount 0.5"
+    )
     assert title(()) == "no edit"
 
 

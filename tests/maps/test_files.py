@@ -10,13 +10,13 @@ import pytest
 
 import cutis
 from cutis.errors import CutisError
+from cutis.looks import presets
 from cutis.maps import (
     DEFAULT,
     estimate,
     find_source,
     load_maps,
     load_model,
-    presets,
     save_maps,
     source_note,
 )

@@ -9,8 +9,9 @@ from cutis.albedo.rare import rare_ratio
 from cutis.colour import reflectance_to_rgb
 from cutis.errors import CutisError
 from cutis.inverse.model import Model
+from cutis.looks import presets
 from cutis.luts.recolouring import recolouring
-from cutis.maps import Edit, estimate, load_maps, load_model, presets, save_maps, skin_of
+from cutis.maps import Edit, estimate, load_maps, load_model, save_maps, skin_of
 from cutis.maps.relighting import STEEPEST
 from cutis.optics import ALIAGA2022, MEASURED2026, NAMES, RARE_NAMES, WAVELENGTHS
 from cutis.textures import read_channels

@@ -8,7 +8,8 @@ import pytest
 import cutis
 from cutis.albedo import albedo_space
 from cutis.errors import CutisError
-from cutis.maps import Edit, SkinMaps, estimate, load_model, presets
+from cutis.looks import presets
+from cutis.maps import Edit, SkinMaps, estimate, load_model
 from cutis.maps.patches import patches
 from cutis.maps.statistics import BINS
 from cutis.optics import NAMES, parameter

@@ -29,7 +29,7 @@ def demo(
     from cutis.jobs.estimate import EstimateJob
     from cutis.jobs.job import part
     from cutis.jobs.outcome import CaptureFiles
-    from cutis.maps import presets
+    from cutis.looks import presets
     from cutis.report.page import write_report
     from cutis.report.previews import previews_of, reduced
     from cutis.textures import read_texture

@@ -1,19 +1,23 @@
 """`cutis edit`: maps in, edited albedo out, in the format and depth of the capture."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from cutis.apps import options
+from cutis.apps.edit_flags import Changes, edit_flags
+
+if TYPE_CHECKING:
+    from cutis.jobs.edit import EditJob
+    from cutis.looks import Look
 
 
-@options.parameter_changes
+@edit_flags
 def edit(
     maps: Annotated[Path, typer.Argument(help="Maps that estimate wrote, NAME.skin.exr.")],
     output: Annotated[Path, typer.Option("--output", "-o", help="Edited albedo to write.")],
-    changes: options.Changes,
-    preset: options.Presets = None,
+    changes: Changes,
     amount: options.Amount = 1.0,
     mask: options.Mask = None,
     source: options.Source = None,
@@ -31,22 +35,36 @@ def edit(
     save_maps: Annotated[
         Path | None, typer.Option(help="Also write the edited maps to this EXR.")
     ] = None,
+    save_look: Annotated[
+        Path | None, typer.Option(help="Also write all that is done as a look, NAME.look.json.")
+    ] = None,
     quiet: options.Quiet = False,
 ) -> None:
     """Edit skin maps and write the albedo with the edit in it.
 
-    Texels that the edit does not change come back bit for bit; --mask paints where it applies. Of
-    a UDIM set, give MAPS, the output and --mask as NAME.<UDIM>.EXT.
+    Presets, looks and parameter flags apply in the order typed; --amount and --mask hold for all of
+    them. Texels that the edit does not change come back bit for bit. Of a UDIM set, give MAPS, the
+    output and --mask as NAME.<UDIM>.EXT.
 
     Example: cutis edit out/face.skin.exr --melanin x1.4 --blood x0.5 -o tanned.png
+
+    Example: cutis edit out/face.skin.exr --look burn.look.json --melanin x1.2 -o burnt.png
 
     Example: cutis edit out/face.skin.exr --illuminant A -o bulb.png
     """
     from cutis.apps.console import bar, out
+    from cutis.errors import CutisError
     from cutis.jobs.edit import EditJob
+    from cutis.report.words import percent
 
+    if not changes and illuminant is None and not edited_before(maps):
+        raise CutisError(
+            "there is nothing to do: give --preset tanning, --look NAME.look.json, a parameter "
+            "flag such as --melanin x1.4, or --illuminant A"
+        )
+    look = changes.look()
     job = EditJob(
-        maps, output, options.edits(preset, changes), amount, mask, source,
+        maps, output, look, amount, mask, source,
         light=None if illuminant is None else options.light_of(illuminant),
         model=None if method is None else options.model_of("default", method),
         space=options.space_of(output_colorspace, ocio),
@@ -54,12 +72,40 @@ def edit(
     )  # fmt: skip
     with bar(quiet) as progress:
         found = job.run(progress)
+    if save_look is not None:
+        write_look(look, save_look, amount, mask, job)
     for one in () if quiet else found:
         for note in one.notes:
             out.say(note)
         for text, clamped in zip(one.edits, one.clamped, strict=True):
-            share = f" ({100 * clamped / max(one.inside, 1):.0f} % of the mask)"
+            share = f" ({percent(clamped / max(one.inside, 1))} of the mask)"
             out.say(text + (f", {clamped:,} texels clamped to range{share}" if clamped else ""))
         if illuminant is not None:
             out.say(f"shown under {illuminant}")
         out.say(f"{one.changed:,} texels changed; wrote {one.output}")
+
+
+def edited_before(maps: Path) -> bool:
+    """Whether maps hold edits already, which are written with no others too."""
+    from cutis.maps import MapsFile
+    from cutis.textures.udim import TOKEN, udim_tiles
+
+    path = next(iter(udim_tiles(maps).values())) if TOKEN in maps.name else maps
+    with MapsFile(path) as file:
+        return bool(file.header.edits or file.header.changed)
+
+
+def write_look(look: "Look", path: Path, amount: float, mask: Path | None, job: "EditJob") -> None:
+    """Writes all that was asked for as one look, whose numbers are of the tissue of the maps."""
+    from cutis.apps.console import out
+    from cutis.looks import PicturePart
+    from cutis.maps import MapsFile
+
+    part = None if mask is None else PicturePart(path=mask.as_posix())
+    whole = look.moved(Path().resolve()).within(amount, part)
+    if whole.tissue is None:
+        with MapsFile(job.tiles()[0].maps) as maps:
+            whole = whole.model_copy(update={"tissue": maps.made_by.load().tissue.name})
+    whole.save(path)
+    if any(not name.is_relative_to(path.resolve().parent) for name in whole.files()):
+        out.say(f"{path} names masks outside its folder: load it with --allow-outside")

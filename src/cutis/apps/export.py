@@ -6,9 +6,10 @@ from typing import Annotated
 import typer
 
 from cutis.apps import options
+from cutis.apps.edit_flags import Changes, edit_flags
 
 
-@options.parameter_changes
+@edit_flags
 def export(
     output: Annotated[
         Path,
@@ -17,8 +18,7 @@ def export(
             "decoder.glsl."
         ),
     ],
-    changes: options.Changes,
-    preset: options.Presets = None,
+    changes: Changes,
     amount: options.Amount = 1.0,
     size: Annotated[int, typer.Option(help="Nodes along a side of a LUT, at most 129.")] = 65,
     colorspace: Annotated[
@@ -51,7 +51,7 @@ def export(
     from cutis.jobs.export import ExportJob
 
     job = ExportJob(
-        output, options.edits(preset, changes), amount, size,
+        output, changes.look(), amount, size,
         options.space_of(colorspace, ocio) or SRGB, maps,
         None if model is None else options.model_of(model),
     )  # fmt: skip

@@ -21,6 +21,7 @@ from cutis.apps import (
     spectrum,
     train,
 )
+from cutis.apps.edit_flags import InOrder
 from cutis.errors import CutisError, printable
 
 app = typer.Typer(
@@ -55,9 +56,9 @@ def _options(
 
 
 app.command("estimate")(estimate.estimate)
-app.command("edit")(edit.edit)
-app.command("render")(render.render)
-app.command("export")(export.export)
+app.command("edit", cls=InOrder)(edit.edit)
+app.command("render", cls=InOrder)(render.render)
+app.command("export", cls=InOrder)(export.export)
 app.command("spectrum")(spectrum.spectrum)
 app.command("fit")(fit.fit)
 app.command("simulate")(simulate.simulate)

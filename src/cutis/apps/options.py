@@ -2,7 +2,7 @@
 
 import functools
 import inspect
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from cutis.inverse import Model
     from cutis.inverse.calibration import Exposure as ExposureValue
     from cutis.inverse.calibration import White as WhiteValue
-    from cutis.maps import Edit
     from cutis.optics import Tissue
 
 Mask = Annotated[
@@ -49,10 +48,6 @@ Illuminant = Annotated[
 TissueName = Annotated[
     str,
     typer.Option("--tissue", help="measured2026, fitted to measured skin, or aliaga2022."),
-]
-Presets = Annotated[
-    list[str] | None,
-    typer.Option("--preset", help="A named edit, before the others; may be repeated."),
 ]
 Amount = Annotated[float, typer.Option("--amount", help="Share of the edit to apply, 0 to 1.")]
 Skins = Annotated[
@@ -112,39 +107,50 @@ Turning = Annotated[
 
 Values = dict[str, float]
 """What the flags of `parameter_values` gave, by name."""
-Changes = dict[str, str]
-"""What the flags of `parameter_changes` gave, by name."""
 
 
 def parameter_values(command: Callable[..., None]) -> Callable[..., None]:
     """Gives a command, in place of its argument `values`, a flag for each parameter of a skin."""
-    return _with_flags(command, "values", float, _value_help)
-
-
-def parameter_changes(command: Callable[..., None]) -> Callable[..., None]:
-    """The same in place of `changes`: a value, a factor (x1.5) or an offset (+0.1) for each."""
-    return _with_flags(command, "changes", str, _change_help)
-
-
-def _with_flags(
-    command: Callable[..., None], slot: str, kind: type, help_of: Callable[[Any], str]
-) -> Callable[..., None]:
     from cutis.optics.parameters import PARAMETERS, RARE
 
     known = (*PARAMETERS, *RARE)
+    flags = [_flag(p.name, float | None, f"--{p.name}", _value_help(p)) for p in known]
+
+    def collect(arguments: dict[str, Any]) -> Values:
+        given = {p.name: arguments.pop(p.name) for p in known}
+        return {name: value for name, value in given.items() if value is not None}
+
+    return with_flags(command, "values", flags, collect)
+
+
+def _value_help(known: Any) -> str:
+    unit = "" if known.unit == "1" else f" {known.unit}"
+    return f"{known.meaning[:1].upper()}{known.meaning[1:]}, {known.low:g}-{known.high:g}{unit}."
+
+
+def _flag(name: str, kind: Any, flag: str, text: str, default: Any = None) -> inspect.Parameter:
+    typed: Any = Annotated[kind, typer.Option(flag, help=text)]
+    how = inspect.Parameter.KEYWORD_ONLY
+    return inspect.Parameter(name, how, default=default, annotation=typed)
+
+
+def with_flags(
+    command: Callable[..., None],
+    slot: str,
+    flags: Sequence[inspect.Parameter],
+    collect: Callable[[dict[str, Any]], Any],
+) -> Callable[..., None]:
+    """Gives a command flags in place of its argument `slot`, which gets what `collect` makes.
+
+    `collect` takes the arguments of all flags and removes its own from them.
+    """
     signature = inspect.signature(command)
 
     @functools.wraps(command)
     def wrapped(**arguments: Any) -> None:
-        given = {p.name: arguments.pop(p.name) for p in known}
-        found = {name: value for name, value in given.items() if value is not None}
+        found = collect(arguments)
         command(**arguments, **{slot: found})
 
-    flags = []
-    for p in known:
-        typed: Any = Annotated[kind | None, typer.Option(f"--{p.name}", help=help_of(p))]
-        how = inspect.Parameter.KEYWORD_ONLY
-        flags.append(inspect.Parameter(p.name, how, default=None, annotation=typed))
     parameters: list[inspect.Parameter] = []
     for one in signature.parameters.values():
         new = flags if one.name == slot else [one]
@@ -155,28 +161,7 @@ def _with_flags(
     return wrapped
 
 
-def _value_help(known: Any) -> str:
-    unit = "" if known.unit == "1" else f" {known.unit}"
-    return f"{known.meaning[:1].upper()}{known.meaning[1:]}, {known.low:g}-{known.high:g}{unit}."
-
-
-def _change_help(known: Any) -> str:
-    unit = "" if known.unit == "1" else f" in {known.unit}"
-    meaning = f"{known.meaning[:1].upper()}{known.meaning[1:]}{unit}"
-    return f"{meaning}: a value, a factor (x1.5) or an offset (+0.1)."
-
-
 # texts, understood once ---------------------------------------------------------------------------
-
-
-def edits(presets: Sequence[str] | None, changes: Mapping[str, str]) -> "tuple[Edit, ...]":
-    """The edits of --preset, in the order given, then those of parameter flags by name."""
-    from cutis.maps import parse_edit
-    from cutis.maps.presets import preset as named
-
-    found = [change for name in presets or [] for change in named(name)]
-    found += [parse_edit(name, text) for name, text in changes.items()]
-    return tuple(found)
 
 
 def white_gains(text: str) -> "WhiteValue":

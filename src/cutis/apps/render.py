@@ -6,14 +6,15 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from cutis.apps import options
+from cutis.apps.edit_flags import Changes, edit_flags
 
 if TYPE_CHECKING:
     from cutis.render.frames import Frame
 
 
-@options.parameter_changes
+@edit_flags
 def render(
-    changes: options.Changes,
+    changes: Changes,
     skin: Annotated[
         Path | None,
         typer.Argument(
@@ -32,7 +33,6 @@ def render(
         ),
     ] = "sphere",
     light: Annotated[str, typer.Option(help="studio, sun or interior.")] = "studio",
-    preset: options.Presets = None,
     amount: options.Amount = 1.0,
     mask: options.Mask = None,
     source: options.Source = None,
@@ -130,7 +130,7 @@ def render(
         roughness=0.5 if roughness is None else roughness,
     )  # fmt: skip
     subject = Subject(
-        shown, scene, options.edits(preset, changes), amount, mask, source, model_only,
+        shown, scene, changes.look(), amount, mask, source, model_only,
         options.source_space(colorspace, ocio), radius, head, orientation.value,
     )  # fmt: skip
     if export is not None:

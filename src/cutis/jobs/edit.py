@@ -12,12 +12,25 @@ from cutis.errors import CutisError
 from cutis.inverse import Model
 from cutis.jobs.files import check_outputs
 from cutis.jobs.job import digest_of
-from cutis.maps import Change, Edit, Header, MapsFile, Step, find_source, maps_writer, open_source
+from cutis.looks import asked
+from cutis.maps import (
+    Change,
+    Edits,
+    Face,
+    Header,
+    MapsFile,
+    Recipe,
+    bound,
+    find_source,
+    maps_writer,
+    open_source,
+)
 from cutis.maps.estimating import Progress, nobody
+from cutis.maps.face import Memo
 from cutis.maps.skin_maps import Recolouring
-from cutis.maps.source import orientation_of, source_note
+from cutis.maps.source import source_note
 from cutis.optics import RARE_NAMES
-from cutis.textures import MaskFile, TextureFile, format_of, sweep, texture_writer
+from cutis.textures import TextureFile, format_of, sweep, texture_writer
 from cutis.textures.udim import TOKEN, tile_of, udim_tiles
 
 
@@ -38,15 +51,15 @@ class Edited:
 class EditJob:
     """A file of maps, what to do to it, and where the edited albedo goes.
 
-    `edits` are applied in order, `amount` (0–1) of them, inside the painted `mask`. `source` is the
-    capture where it is not where the maps say; `model` another model than that of the maps.
-    `light` shows the face under another light. `space` is that of the output, None for the
-    capture's. `save_maps` also writes the edited maps. Of a UDIM set, all names hold <UDIM>.
+    `edits` are a look, or edits in order: `amount` (0–1) of them, inside the painted `mask`.
+    `source` is the capture where it is not where the maps say; `model` another model than that of
+    the maps. `light` shows the face under another light. `space` is that of the output, None for
+    the capture's. `save_maps` also writes the edited maps. Of a UDIM set, all names hold <UDIM>.
     """
 
     maps: Path
     output: Path = field(metadata={"result": False})
-    edits: tuple[Edit, ...] = ()
+    edits: Edits = ()
     amount: float = 1.0
     mask: Path | None = None
     source: Path | None = None
@@ -57,7 +70,7 @@ class EditJob:
 
     def __post_init__(self) -> None:
         format_of(self.output)  # fails now rather than after the work
-        Step(self.edits, self.amount)
+        asked(self.edits, self.amount)
         if TOKEN in self.maps.name:
             for path in (self.output, self.save_maps, self.source):
                 if path is not None and TOKEN not in path.name:
@@ -83,10 +96,14 @@ class EditJob:
         """Writes the edited albedo of every tile, and the edited maps where that is asked for."""
         from cutis.jobs.job import part
 
-        jobs = self.tiles()
-        return [job._run(part(progress, number, len(jobs))) for number, job in enumerate(jobs)]
+        jobs, memo = self.tiles(), Memo()
+        wanted = asked(self.edits, self.amount, self.mask)
+        return [
+            job._run(wanted, memo, part(progress, number, len(jobs)))
+            for number, job in enumerate(jobs)
+        ]
 
-    def _run(self, progress: Progress) -> Edited:
+    def _run(self, wanted: Recipe, memo: Memo, progress: Progress) -> Edited:
         with contextlib.ExitStack() as stack:
             maps = stack.enter_context(MapsFile(self.maps))
             path = find_source(maps.provenance, self.maps, self.source)
@@ -98,27 +115,24 @@ class EditJob:
             texture = stack.enter_context(open_source(maps.provenance, path))
             if texture.shape != maps.shape:
                 raise CutisError(f"{path}: the texture is {texture.shape}, the maps {maps.shape}")
-            mask = None
-            if self.mask is not None:
-                how = orientation_of(maps.provenance)
-                mask = stack.enter_context(MaskFile(self.mask, maps.frame, how))
-            changes = (Step(self.edits, self.amount, mask),)
+            changes = bound([wanted], Face(maps, memo=memo))
             model = self.model or maps.made_by.load()
-            done = self._albedo(stack, maps, texture, changes, mask, model, progress)
-            notes = (*texture.notes, *([] if mask is None else mask.notes))
-            done = replace(done, notes=notes)
+            done = self._albedo(stack, maps, texture, changes, model, progress)
+            said = tuple(note for change in changes for note in change.notes)
+            done = replace(done, notes=(*texture.notes, *said))
             if self.save_maps is not None:
-                self._maps(stack, maps, texture, changes, done, model, progress)
+                looks = (*maps.header.looks, *wanted.documents)
+                self._maps(stack, maps, texture, changes, looks, done, model, progress)
         return done
 
     def _albedo(
         self, stack: contextlib.ExitStack, maps: MapsFile, texture: TextureFile,
-        changes: tuple[Change, ...], mask: MaskFile | None, model: Model, progress: Progress,
+        changes: tuple[Change, ...], model: Model, progress: Progress,
     ) -> Edited:  # fmt: skip
         look = Recolouring(model, maps.header.calibration, self.light)
         writer = stack.enter_context(texture_writer(self.output, texture, self.space))
         height, width = maps.shape
-        inside, changed, marked = 0, 0, False
+        inside, changed = 0, 0
         clamped: Any = 0
         for rows in texture.bands():
             skin = maps.edited(rows, changes, trust=False)
@@ -127,32 +141,30 @@ class EditJob:
             result = part.with_linear(colours, which)
             writer.write(result)
             inside += int(np.count_nonzero(skin.mask))
-            if mask is not None and not marked:
-                marked = bool((mask.rows(rows) > MaskFile.BLACK).any())
             changed += int(np.count_nonzero((result.pixels != part.pixels).any(axis=-1)))
             clamped = clamped + np.array(skin.clamped, dtype=np.int64)
             progress(min(rows.stop, height) * width, height * width, "editing")
         if not inside:
             raise maps.no_mask()
-        if mask is not None and not marked:
-            raise mask.empty()
         told = tuple(int(count) for count in clamped[len(maps.header.edits) :])
         lines = tuple(line for change in changes for line in change.told)
         return Edited(self.output, lines, told, inside, changed)
 
     def _maps(
         self, stack: contextlib.ExitStack, maps: MapsFile, texture: TextureFile,
-        changes: tuple[Change, ...], done: Edited, model: Model, progress: Progress,
+        changes: tuple[Change, ...], looks: tuple[str, ...], done: Edited, model: Model,
+        progress: Progress,
     ) -> None:  # fmt: skip
         """In a second pass: the header says how many texels were clamped."""
         assert self.save_maps is not None
         before = maps.header
-        touched = {edit.parameter for edit in self.edits} | set(before.changed)
+        touched = {name for change in changes for name in change.touches} | set(before.changed)
         header = Header(
             model.name, model.digest, before.calibration, source_note(texture), before.state,
             (*before.edits, *done.edits), (*before.clamped, *done.clamped), before.sigmas,
             before.confident, tuple(sorted(touched)),
             tuple(name for name in RARE_NAMES if name in touched | set(before.rare)),
+            looks, before.tiles,
         )  # fmt: skip
         height, width = maps.shape
         put = stack.enter_context(maps_writer(self.save_maps, header, maps.shape))

@@ -38,6 +38,7 @@ from cutis.textures import (
     replacing,
     sweep,
 )
+from cutis.textures.udim import tile_numbers
 
 
 @dataclass(frozen=True)
@@ -249,6 +250,7 @@ class _Run:
         return Header(
             model.name, model.digest, known.calibration, self._notes, known.state,
             sigmas=tuple(first.sigmas), confident=first.confidence is not None,
+            tiles=tile_numbers([one.face for one in self._job.captures]),
         )  # fmt: skip
 
     def through(self, regions: Regions | None, progress: Progress) -> None:

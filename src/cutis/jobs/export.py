@@ -1,5 +1,6 @@
 """Edits and models for other programs: look-up tables and networks."""
 
+import contextlib
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -11,8 +12,9 @@ from cutis.inverse.shader_export import decoder_glsl
 from cutis.inverse.shipped import networks
 from cutis.jobs.files import check_outputs
 from cutis.jobs.job import digest_of
+from cutis.looks import nothing
 from cutis.luts import export_lut
-from cutis.maps import Edit, MapsFile, load_model
+from cutis.maps import Edits, Face, MapsFile, load_model
 from cutis.maps.estimating import Progress, nobody
 from cutis.textures import replacing, sweep
 
@@ -25,13 +27,13 @@ NETWORKS = (".onnx", ".glsl")
 class ExportJob:
     """An edit as NAME.cube or NAME.clf, or networks as decoder.onnx, encoder.onnx, decoder.glsl.
 
-    A LUT has `size` nodes along a side and is for textures stored in `space`; `maps` is a file
-    whose calibration and model it takes over, `model` another model; networks are those of
-    aliaga2022, or of a .safetensors file.
+    `edits` are a look, or edits in order, `amount` (0–1) of them. A LUT has `size` nodes along a
+    side and is for textures stored in `space`; `maps` is a file whose calibration and model it
+    takes over, `model` another model; networks are those of aliaga2022, or of a .safetensors file.
     """
 
     output: Path = field(metadata={"result": False})
-    edits: tuple[Edit, ...] = ()
+    edits: Edits = ()
     amount: float = 1.0
     size: int = 65
     space: Space = SRGB
@@ -40,16 +42,17 @@ class ExportJob:
 
     def __post_init__(self) -> None:
         kind = self.output.suffix.lower()
-        if kind in NETWORKS and (self.edits or self.maps is not None):
+        some = not nothing(self.edits)
+        if kind in NETWORKS and (some or self.maps is not None):
             raise CutisError(f"{self.output} is for networks; edits are written as .cube or .clf")
         if kind not in (*LUTS, *NETWORKS):
             raise CutisError(
                 f"{self.output}: a LUT is written as .cube or .clf, networks as .onnx or .glsl; "
                 "end its name so"
             )
-        if kind in LUTS and not self.edits:
+        if kind in LUTS and not some:
             raise CutisError(
-                "nothing to export: give --preset or a parameter flag such as --melanin x2"
+                "nothing to export: give --look, --preset or a parameter flag such as --melanin x2"
             )
 
     def digest(self) -> str:
@@ -68,14 +71,17 @@ class ExportJob:
 
     def _lut(self) -> str:
         calibration, model = Calibration(), self.model
-        if self.maps is not None:
-            with MapsFile(self.maps) as file:
-                calibration = file.header.calibration
+        with contextlib.ExitStack() as stack:
+            face = None
+            if self.maps is not None:
+                file = stack.enter_context(MapsFile(self.maps))
+                calibration, face = file.header.calibration, Face(file)
                 model = model or file.made_by.load()
-        title = export_lut(
-            self.output, self.edits, self.space, self.size,
-            model=model or load_model(), calibration=calibration, amount=self.amount,
-        )  # fmt: skip
+            title = export_lut(
+                self.output, self.edits, self.space, self.size,
+                model=model or load_model(), calibration=calibration, amount=self.amount,
+                face=face,
+            )  # fmt: skip
         return f"{title}, {self.size} nodes a side"
 
     def _networks(self) -> str:

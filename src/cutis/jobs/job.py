@@ -18,6 +18,7 @@ from cutis.colour import Light
 from cutis.colour.spaces import Space
 from cutis.inverse import Model
 from cutis.inverse.model import content_digest
+from cutis.looks import Look
 from cutis.maps.estimating import Progress, nobody
 from cutis.maps.source import digest as file_digest
 
@@ -88,6 +89,8 @@ def tell(value: Any) -> Told:
         return Told(value.name, file_digest(value) if value.is_file() else "")
     if isinstance(value, Model):
         return Told(value.name, value.digest)
+    if isinstance(value, Look):
+        return Told(value.name or "a look", value.digest)
     if isinstance(value, Light):
         return Told(value.name, value.digest)
     if isinstance(value, Mapping):

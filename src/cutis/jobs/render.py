@@ -17,10 +17,11 @@ from numpy.typing import NDArray
 from cutis.colour import Space
 from cutis.errors import CutisError
 from cutis.jobs.files import check_outputs, made_folder
-from cutis.jobs.job import digest_of, told
-from cutis.maps import Change, Edit, Step
+from cutis.jobs.job import digest_of, tell, told
+from cutis.looks import asked, nothing
+from cutis.maps import Change, Edits, Face, bound
 from cutis.maps.estimating import Progress, nobody
-from cutis.maps.source import digest, orientation_of
+from cutis.maps.source import digest
 from cutis.render.blender import Blender, find_blender
 from cutis.render.cycles import INDEX, METHOD, base_colour, facing
 from cutis.render.cycles import radius as cycles_radius
@@ -35,7 +36,7 @@ from cutis.render.material_export import export_material
 from cutis.render.medium import mean_free_path, of_maps
 from cutis.render.scene import Scene
 from cutis.render.skin import MAPS, Rows, Skin
-from cutis.textures import MaskFile, Orientation, TextureFile, format_of, read_texture, sweep
+from cutis.textures import Orientation, TextureFile, format_of, read_texture, sweep
 
 METRE = 1000.0
 """Millimetres per scene unit of an exported material, unless the scene says otherwise."""
@@ -47,16 +48,16 @@ RADII = ("tissue", "maps")
 class Subject:
     """What is rendered: a skin with edits, and `scene` with all that is not skin.
 
-    `skin` is a file of maps or an albedo texture. `edits` apply in order, `amount` (0–1) of them,
-    inside the painted `mask`. `source` is the capture of maps where it is not where they say,
-    `model_only` leaves it out. `colorspace` is that of a texture, None for what it says. `radius`
-    is one of `RADII`. `head` is the bundled head that the scene shows, if it is one. `orientation`
-    "ignore" keeps a texture in the order it is stored in.
+    `skin` is a file of maps or an albedo texture. `edits` are a look, or edits in order: `amount`
+    (0–1) of them, inside the painted `mask`. `source` is the capture of maps where it is not where
+    they say, `model_only` leaves it out. `colorspace` is that of a texture, None for what it says.
+    `radius` is one of `RADII`. `head` is the bundled head that the scene shows, if it is one.
+    `orientation` "ignore" keeps a texture in the order it is stored in.
     """
 
     skin: Path
     scene: Scene = field(default_factory=Scene)
-    edits: tuple[Edit, ...] = ()
+    edits: Edits = ()
     amount: float = 1.0
     mask: Path | None = None
     source: Path | None = None
@@ -69,7 +70,7 @@ class Subject:
     def __post_init__(self) -> None:
         if self.radius not in RADII:
             raise CutisError(f"--radius must be {' or '.join(RADII)}, not {self.radius!r}")
-        Step(self.edits, self.amount)
+        asked(self.edits, self.amount)
 
     @contextlib.contextmanager
     def opened(self) -> Iterator[tuple[Skin, tuple[Change, ...]]]:
@@ -83,20 +84,16 @@ class Subject:
             stack.enter_context(skin)
             if self.head is not None:
                 _check_fit(skin, self.head)
-            yield skin, self.changes(skin, self.edits, stack)
+            yield skin, self.changes(skin)
 
-    def changes(
-        self, skin: Skin, edits: tuple[Edit, ...], stack: contextlib.ExitStack
-    ) -> tuple[Change, ...]:
-        """Edits as they apply here; the mask is open for as long as the stack is."""
-        if not edits:
-            return ()
-        mask = None
-        if self.mask is not None:
-            kept = self.orientation
-            how = kept if skin.maps is None else orientation_of(skin.maps.provenance)
-            mask = stack.enter_context(MaskFile(self.mask, skin.shape, how))
-        return (Step(edits, self.amount, mask),)
+    def changes(self, skin: Skin, more: Edits = ()) -> tuple[Change, ...]:
+        """The edits, and more of them, as they are on an open skin."""
+        wanted = [
+            asked(one, self.amount, self.mask) for one in (self.edits, more) if not nothing(one)
+        ]
+        if wanted and skin.maps is None:
+            raise skin.no_maps()
+        return bound(wanted, Face(skin.maps)) if skin.maps is not None else ()
 
     def inputs(self) -> dict[str, Path | None]:
         """All files that are read, by what they are called."""
@@ -157,20 +154,21 @@ class RenderJob:
         with (
             subject.opened() as (skin, changes),
             tempfile.TemporaryDirectory(prefix="cutis-") as folder,
-            contextlib.ExitStack() as stack,
         ):
             check_outputs(
                 names, {"the capture": None if skin.capture is None else skin.capture.path}
             )
             result.credits = credits_of(subject.scene.mesh, *skin.origins())
-            result.notes = tuple(skin.notes)
+            said = (note for change in changes for note in change.notes)
+            result.notes = (*skin.notes, *said)
             base = _recipe(subject, skin, blender) if sequence else {}
-            feeds = _Feeds(subject, skin, changes, Path(folder), stack)
+            feeds = _Feeds(subject, skin, Path(folder))
             recipes: dict[Path, tuple[Path, str]] = {}
             every: list[str] = []
             todo: list[tuple[Scene, Path]] = []
             for frame, name in zip(frames, names, strict=True):
-                step = {"turn": frame.turn, "edits": [str(e) for e in frame.edits]}
+                more = tell(frame.edits)
+                step = {"turn": frame.turn, "edits": [more.asked, more.content]}
                 recipe = recipe_digest(base | step)
                 every.append(recipe)
                 if sequence and not self.again and log.has(name, recipe):
@@ -256,19 +254,15 @@ class MaterialJob:
 class _Feeds:
     """Textures for Cycles in a folder, each written once however many frames share it."""
 
-    def __init__(
-        self, subject: Subject, skin: Skin, changes: tuple[Change, ...], folder: Path,
-        stack: contextlib.ExitStack,
-    ) -> None:  # fmt: skip
+    def __init__(self, subject: Subject, skin: Skin, folder: Path) -> None:
         self._subject, self._skin, self._folder = subject, skin, folder
-        self._changes, self._stack = changes, stack
         self._written: dict[Any, tuple[Path, Any]] = {}
 
     def scene(self, frame: Frame) -> Scene:
         """The scene of a frame, with its textures."""
         if frame.edits not in self._written:
-            more = self._subject.changes(self._skin, frame.edits, self._stack)
-            self._written[frame.edits] = self._write((*self._changes, *more))
+            changes = self._subject.changes(self._skin, frame.edits)
+            self._written[frame.edits] = self._write(changes)
         colour, radius = self._written[frame.edits]
         scene = self._subject.scene
         return replace(

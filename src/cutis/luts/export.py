@@ -1,7 +1,6 @@
 """An edit into a LUT file that other programs load: .cube or .clf by its extension."""
 
 import os
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -13,32 +12,33 @@ from cutis.luts import lut_files
 from cutis.luts.clf_lut import OFFSET, skin_lut
 from cutis.luts.cube_lut import Space, edit_lut
 from cutis.luts.recolouring import recolouring, title
-from cutis.maps.defaults import DEFAULT, load_model
-from cutis.maps.edits import Edit
+from cutis.maps import DEFAULT, Edits, Face, load_model
 
 
 def export_lut(
     path: str | os.PathLike[str],
-    edits: Sequence[Edit],
+    edits: Edits,
     space: Space,
     size: int = 65,
     *,
     model: Model | str = DEFAULT,
     calibration: Calibration | None = None,
     amount: float = 1.0,
+    face: Face | None = None,
 ) -> str:
     """Writes the LUT of edits for albedos stored in `space`; returns its title.
 
     `size` is the number of nodes along a side; `calibration` that of the captures it will be used
-    on. Raises CutisError for other extensions, sizes out of range, edits that depend on the place,
-    and calibrations under which colours are no numbers.
+    on, `face` the one that the edits take medians of. Raises CutisError for other extensions, sizes
+    out of range, edits that depend on the place, and calibrations under which colours are no
+    numbers.
     """
     kind = Path(path).suffix.lower()
     if kind not in lut_files.FORMATS:
         raise CutisError(f"{path}: a LUT is written as .cube or .clf; end its name so")
     if calibration is not None:
         _check(calibration)
-    edit = recolouring(edits, model, calibration, amount)
+    edit = recolouring(edits, model, calibration, amount, face)
     text = f"{title(edits, amount)}, for {space.name}"
     if kind == ".cube":
         plain = edit_lut(edit, size, space)

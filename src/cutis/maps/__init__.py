@@ -1,12 +1,12 @@
-"""What users hold: skin maps, edits, presets, and the files they are kept in."""
+"""What users hold: skin maps, edits, and the files they are kept in."""
 
 from typing import Any
 
-from cutis.maps import presets
-from cutis.maps.changes import Change, Step, Tile
+from cutis.maps.changes import Change, Edits, Recipe, Step, Tile, recipe
 from cutis.maps.defaults import DEFAULT, default_tissue, load_model
 from cutis.maps.edits import Edit, parse_edit
 from cutis.maps.estimating import Surveyed, estimate, estimate_bands, survey
+from cutis.maps.face import Face, bound
 from cutis.maps.plain import Maps
 from cutis.maps.reading import MapsFile, load_maps, load_skin
 from cutis.maps.sampler import Sampler
@@ -21,17 +21,21 @@ __all__ = [
     "Change",
     "Edit",
     "EditedEstimate",
+    "Edits",
     "Estimate",
+    "Face",
     "FileCapture",
     "Header",
     "MadeBy",
     "Maps",
     "MapsFile",
+    "Recipe",
     "Sampler",
     "SkinMaps",
     "Step",
     "Surveyed",
     "Tile",
+    "bound",
     "default_tissue",
     "estimate",
     "estimate_bands",
@@ -42,7 +46,7 @@ __all__ = [
     "maps_writer",
     "open_source",
     "parse_edit",
-    "presets",
+    "recipe",
     "save_maps",
     "skin_of",
     "source_note",
@@ -53,6 +57,7 @@ _MOVED = {
     "Regions": "cutis.report:Regions",
     "report": "cutis.report:report",
     "export_lut": "cutis.luts:export_lut",
+    "presets": "cutis.looks:presets",
 }
 
 

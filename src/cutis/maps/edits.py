@@ -1,4 +1,4 @@
-"""Edits of skin maps as values: multiply, offset, set, blend one parameter."""
+"""Edits of skin maps as values: multiply, offset, set, or hold one parameter within ends."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -15,19 +15,21 @@ OPERATIONS: dict[str, Callable[[NDArray[np.float32], Amount], NDArray[np.float32
     "multiply": lambda values, amount: values * np.float32(amount),
     "offset": lambda values, amount: values + np.float32(amount),
     "set": lambda values, amount: np.broadcast_to(np.float32(amount), values.shape).copy(),
+    "floor": lambda values, amount: np.maximum(values, np.float32(amount)),
+    "ceiling": lambda values, amount: np.minimum(values, np.float32(amount)),
 }
 WHERE = ("everywhere", "patches")
 
 
 @dataclass(frozen=True)
 class Edit:
-    """One change of one parameter: `operation` is multiply, offset or set.
+    """One change of one parameter: `operation` is multiply, offset, set, floor or ceiling.
 
     `where` is "everywhere" or "patches", irregular patches over about a third of the skin
-    (vitiligo); a painted mask can narrow both. `amount` is in the parameter's unit for offset
-    and set: a number, or an array (H, W) with one for each texel. Raises CutisError for unknown
-    names, amounts that are not finite, negative factors, and a number to set that is out of range;
-    the values of an array are clamped, since maps are 0 where there is no skin.
+    (vitiligo); a painted mask can narrow both. `amount` is in the parameter's unit except for
+    multiply: a number, or an array (H, W) with one for each texel. Raises CutisError for unknown
+    names, amounts that are not finite, negative factors, and a number to set, floor or ceiling,
+    that is out of range; the values of an array are clamped, since maps are 0 without skin.
     """
 
     parameter: str
@@ -45,7 +47,7 @@ class Edit:
         bad = not np.isfinite(amount).all() or (self.operation == "multiply" and amount.min() < 0)
         if bad:
             raise CutisError(f"cannot {self.operation} {self.parameter} by {self._told('g')}")
-        if self.operation == "set" and amount.ndim == 0:
+        if self.operation in ("set", "floor", "ceiling") and amount.ndim == 0:
             known.check(float(amount))
 
     def _checked(self) -> NDArray[np.floating]:
@@ -66,7 +68,10 @@ class Edit:
         return "a map" if isinstance(self.amount, np.ndarray) else f"{self.amount:{how}}"
 
     def __str__(self) -> str:
-        sign = {"multiply": f"x{self._told('g')}", "offset": self._told("+g")}
+        sign = {
+            "multiply": f"x{self._told('g')}", "offset": self._told("+g"),
+            "floor": f"at least {self._told('g')}", "ceiling": f"at most {self._told('g')}",
+        }  # fmt: skip
         text = f"{self.parameter} {sign.get(self.operation, self._told('g'))}"
         return text if self.where == "everywhere" else f"{text} in {self.where}"
 
@@ -74,6 +79,12 @@ class Edit:
         """The same for some rows of the maps."""
         whole = self.amount
         return replace(self, amount=whole[rows]) if isinstance(whole, np.ndarray) else self
+
+    def of(self, values: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Edited copy of values of a map, clamped to range; any shape where the amount is one."""
+        known = parameter(self.parameter)
+        edited = OPERATIONS[self.operation](values, self.amount)
+        return np.clip(edited, np.float32(known.low), np.float32(known.high))
 
     def __call__(
         self, values: NDArray[np.float32], weight: NDArray[np.float32] | None = None
@@ -107,12 +118,13 @@ class Edit:
     ) -> NDArray[np.float32]:
         """What the edit makes of a map's standard deviations, in the same units and shape.
 
-        A factor scales σ, an offset leaves it, a set value is known: σ is 0. A weight w takes that
-        much of the change, as of the value. No σ is wider than the range; where a value was clamped
-        to an end σ stays, since the skin beyond that end is no better known.
+        A factor scales σ, a set value is known: σ is 0; what else is done leaves it. A weight w
+        takes that much of the change, as of the value. No σ is wider than the range; where a value
+        was clamped to an end σ stays, since the skin beyond that end is no better known.
         """
-        slopes: dict[str, Amount] = {"multiply": self.amount, "offset": 1.0, "set": 0.0}
-        slope, known = np.asarray(slopes[self.operation], np.float64), parameter(self.parameter)
+        slopes: dict[str, Amount] = {"multiply": self.amount, "set": 0.0}
+        known = parameter(self.parameter)
+        slope = np.asarray(slopes.get(self.operation, 1.0), np.float64)
         scale = np.float32(slope) if weight is None else 1 + weight * np.float32(slope - 1)
         return np.minimum(sigma * scale, np.float32(known.high - known.low))
 

@@ -13,14 +13,17 @@ from cutis.errors import CutisError
 from cutis.inverse.calibration import Calibration
 from cutis.maps.changes import Change, Tile
 from cutis.maps.defaults import OLD_DEFAULT
+from cutis.maps.face import TileOf, edited
 from cutis.maps.plain import Map, Maps, Place
 from cutis.maps.skin_maps import EditedEstimate, Estimate, MadeBy, SkinMaps
 from cutis.maps.source import find_source, open_source, source_note
+from cutis.maps.statistics import Quantiles
 from cutis.maps.trust import CONFIDENCE, SIGMA, stored_sigma
 from cutis.maps.writing import ORIGINAL, PREFIX, Header
 from cutis.optics import NAMES, PARAMETERS, RARE, RARE_NAMES, Parameter, parameter
 from cutis.textures.channels import ChannelFile
 from cutis.textures.closing import Closing
+from cutis.textures.udim import tile_of, udim_pattern
 
 LARGEST = 1e3
 """Of gains, and of the numbers that turn the RGB of one light into that of another."""
@@ -68,6 +71,10 @@ class MapsFile(Closing):
             edits = [
                 (str(edit), int(clamped)) for edit, clamped in json.loads(notes.pop("edits", "[]"))
             ]
+            looks = tuple(json.dumps(look) for look in json.loads(notes.pop("looks", "[]")))
+            tiles = tuple(int(number) for number in notes.pop("tiles", "").split())
+            text = notes.pop("quantiles", "")
+            quantiles = Quantiles.of_text(text) if text else None
             if not isinstance(state, dict):
                 raise TypeError("a survey is an object")
         except (
@@ -92,7 +99,8 @@ class MapsFile(Closing):
             sigmas=tuple(name for name in known if name + SIGMA in there),
             confident=CONFIDENCE in there,
             changed=tuple(name for name in known if ORIGINAL + name in there),
-            rare=rare,
+            rare=rare, looks=looks, tiles=tiles,
+            quantiles=quantiles if quantiles is not None and quantiles.count else None,
         )  # fmt: skip
 
     @property
@@ -134,7 +142,8 @@ class MapsFile(Closing):
         now = Maps(stored, mask, place)
         rest: dict[str, Any] = {
             "by": self.made_by, "calibrated": header.calibration, "sure": sure,
-            "notes": header.provenance, "state": header.state,
+            "notes": header.provenance, "state": header.state, "tile": self.tile,
+            "quantiles": header.quantiles,
         }  # fmt: skip
         if not (header.edits or header.changed):
             return Estimate(now, spread=spread, **rest)
@@ -144,19 +153,30 @@ class MapsFile(Closing):
             if p.name in header.changed
         }
         return EditedEstimate(
-            Estimate(now.with_values(before), **rest), (), Tile(now, spread, header.clamped),
-            header.edits,
+            Estimate(now.with_values(before), **rest), (), Tile(now, spread, header.clamped, sure),
+            header.edits, kept=header.looks,
         )  # fmt: skip
 
     def edited(self, rows: slice, changes: Sequence[Change], trust: bool = True) -> SkinMaps:
-        """Maps of some rows with changes of the whole texture applied; see `rows`."""
-        start, stop, _ = rows.indices(self.shape[0])
-        reach = sum(change.reach for change in changes)
-        wide = slice(max(0, start - reach), min(self.shape[0], stop + reach))
-        part: SkinMaps = self.rows(wide, trust)
-        for change in changes:
-            part = part.changed_by(change.rows(wide))
-        return part.rows(slice(start - wide.start, stop - wide.start)) if changes else part
+        """Maps of some rows with changes that are ready for this face applied; see `rows`."""
+        return edited(self, rows, changes, trust)
+
+    @property
+    def known(self) -> Quantiles | None:
+        """Where the values of the maps lie, as the header says."""
+        return self.header.quantiles
+
+    @property
+    def tile(self) -> TileOf:
+        """Which tile of a set it is: as the header says, if the name still does too."""
+        pattern = udim_pattern(self.path)
+        files = {} if pattern is None else {n: tile_of(pattern, n) for n in self.header.tiles}
+        own = next((n for n, path in files.items() if path == self.path), None)
+        return TileOf() if own is None else TileOf(own, files, MapsFile)
+
+    def knows(self, name: str) -> bool:
+        """Whether there is a σ of a map, or "confidence"."""
+        return self.header.confident if name == CONFIDENCE else name in self.header.sigmas
 
     def no_mask(self) -> CutisError:
         """What to raise when the mask is empty or broken."""

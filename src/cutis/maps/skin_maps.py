@@ -20,11 +20,12 @@ from cutis.errors import CutisError
 from cutis.inverse.calibration import Calibration
 from cutis.inverse.model import Model, State
 from cutis.maps import colours
-from cutis.maps.changes import Change, Step, Tile
+from cutis.maps.changes import Change, Edits, Recipe, Step, Tile, recipe
 from cutis.maps.defaults import DEFAULT, load_model
 from cutis.maps.edits import Edit
+from cutis.maps.face import Face, Held, TileOf
 from cutis.maps.plain import Map, Maps, read_only
-from cutis.maps.statistics import MapStatistics
+from cutis.maps.statistics import MapStatistics, Quantiles
 from cutis.maps.writing import save_maps
 from cutis.optics import NAMES, Tissue, parameter
 from cutis.textures.texture import Texture, bands
@@ -129,8 +130,13 @@ class SkinMaps(abc.ABC):
         """The same maps, whose colours another model tells."""
 
     @abc.abstractmethod
-    def changed_by(self, change: Change) -> "EditedEstimate":
-        """These maps with a change on top."""
+    def changed_by(self, recipe: Recipe) -> "EditedEstimate":
+        """These maps with something done on top; CutisError where that does not fit them."""
+
+    @property
+    @abc.abstractmethod
+    def documents(self) -> tuple[str, ...]:
+        """Looks that were applied, as headers keep them."""
 
     @property
     def original(self) -> "Estimate | None":
@@ -248,33 +254,28 @@ class SkinMaps(abc.ABC):
 
     def apply(
         self,
-        edits: Edit | Change | Sequence[Edit],
+        edits: Edits,
         where: ArrayLike | None = None,
         *,
         amount: float = 1.0,
     ) -> "EditedEstimate":
-        """Applies edits, a preset or any other `Change` in order, inside the mask `where`.
+        """Applies edits in order, a preset, a look or any other `Recipe`, inside the mask `where`.
 
-        `where` (H, W) in [0, 1] takes the place of procedural patches; `amount` in [0, 1] blends
+        `where` (H, W) in [0, 1] takes the place of procedural masks; `amount` in [0, 1] blends
         between the old values and the new. Values are clamped to range and counted in `clamped`.
         Texels whose mask is 0 are never touched.
         """
-        if isinstance(edits, Edit):
-            edits = (edits,)
-        if not isinstance(edits, Sequence):
-            if where is not None or amount != 1:
-                raise CutisError("a change of its own brings its amount and masks with it")
-            return self.changed_by(edits)
+        wanted = recipe(edits)
         painted = None if where is None else np.asarray(where, dtype=np.float32)
         if painted is not None and painted.shape != self.shape:
             raise CutisError(f"the edit mask is {painted.shape}, the maps are {self.shape}")
-        for edit in edits:
+        for edit in wanted.edits if isinstance(wanted, Step) else ():
             array = edit.amount
             if isinstance(array, np.ndarray) and array.shape != self.shape:
                 raise CutisError(
                     f"the amount of {edit.parameter} is {array.shape}, the maps are {self.shape}"
                 )
-        return self.changed_by(Step(tuple(edits), amount, painted))
+        return self.changed_by(wanted.within(amount, painted))
 
     # colour ------------------------------------------------------------------------------------
 
@@ -345,6 +346,14 @@ class SkinMaps(abc.ABC):
         """Writes maps and mask as channels of one EXR; `dtype` float (exact) or half."""
         save_maps(self, path, dtype)
 
+    def _repr_html_(self) -> str:
+        """A thumbnail of the albedo, for notebooks."""
+        from cutis.textures.thumbnail import LONGEST, picture_html
+
+        step = max(1, -(-max(self.shape) // LONGEST))
+        few = [self.rows(slice(row, row + 1)).albedo() for row in range(0, self.shape[0], step)]
+        return picture_html(np.concatenate(few), repr(self)) if few else repr(self)
+
     def __repr__(self) -> str:
         height, width = self.shape
         cover = float(np.mean(self.mask > 0)) if self.mask.size else 0.0
@@ -361,7 +370,8 @@ class Estimate(SkinMaps):
     """What a model found in a capture.
 
     `found` are the maps, `spread` their σ by name, `sure` the confidence, `capture` the colours
-    (H, W, 3) that they were found in, `by` the model, `state` what its survey found (`inverse`).
+    (H, W, 3) that they were found in, `by` the model, `state` what its survey found (`inverse`). Of
+    maps out of a file `tile` says which of a set they are, `quantiles` is what its header keeps.
     """
 
     found: Maps
@@ -372,6 +382,8 @@ class Estimate(SkinMaps):
     capture: Map | None = None
     notes: Mapping[str, str] = field(default_factory=dict)
     state: State = field(default_factory=dict)
+    tile: TileOf = field(default_factory=TileOf)
+    quantiles: Quantiles | None = None
 
     def __post_init__(self) -> None:
         shape = self.found.shape
@@ -431,9 +443,14 @@ class Estimate(SkinMaps):
         """The same maps, whose colours another model tells."""
         return replace(self, by=MadeBy.of(model))
 
-    def changed_by(self, change: Change) -> "EditedEstimate":
+    @property
+    def documents(self) -> tuple[str, ...]:
+        """None."""
+        return ()
+
+    def changed_by(self, recipe: Recipe) -> "EditedEstimate":
         """An edited estimate."""
-        return EditedEstimate(self, (change,))
+        return EditedEstimate(self).changed_by(recipe)
 
 
 def skin_of(
@@ -469,13 +486,16 @@ class EditedEstimate(SkinMaps):
     """An estimate with changes, which are worked out when their maps are asked for.
 
     `before` is the estimate; `changes` are applied in order to `base`, maps that are edited already
-    (as files hold them, with `told` and `counted` of what was done to them), or to the estimate's.
+    (as files hold them, with `told` and `kept`, lines and documents of what was done to them), or
+    to the estimate's. `done` are the recipes that the changes were made of.
     """
 
     before: Estimate
     changes: tuple[Change, ...] = ()
     base: Tile | None = None
     told: tuple[str, ...] = ()
+    kept: tuple[str, ...] = ()
+    done: tuple[Recipe, ...] = ()
 
     @cached_property
     def _tile(self) -> Tile:
@@ -487,16 +507,16 @@ class EditedEstimate(SkinMaps):
         start, stop, _ = rows.indices(height)
         reach = sum(change.reach for change in self.changes)
         wide = slice(max(0, start - reach), min(height, stop + reach))
-        tile = _part(self._start, wide)
+        tile = self._start.rows(wide)
         for change in self.changes:
             tile = change.rows(wide)(tile)
-        return _part(tile, slice(start - wide.start, stop - wide.start))
+        return tile.rows(slice(start - wide.start, stop - wide.start))
 
     @property
     def _start(self) -> Tile:
         if self.base is not None:
             return self.base
-        return Tile(self.before.maps, self.before.sigmas)
+        return Tile(self.before.maps, self.before.sigmas, (), self.before.sure)
 
     @property
     def maps(self) -> Maps:
@@ -536,12 +556,19 @@ class EditedEstimate(SkinMaps):
     def rows(self, rows: slice) -> "EditedEstimate":
         """The edited estimate of some rows, worked out; its counts are those of the rows."""
         done = "_tile" in self.__dict__
-        tile = _part(self._tile, rows) if done else self._worked_out(rows)
-        return EditedEstimate(self.before.rows(rows), (), tile, self.edits)
+        tile = self._tile.rows(rows) if done else self._worked_out(rows)
+        return EditedEstimate(self.before.rows(rows), (), tile, self.edits, self.documents)
 
-    def changed_by(self, change: Change) -> "EditedEstimate":
+    @property
+    def documents(self) -> tuple[str, ...]:
+        """Looks that were applied."""
+        return (*self.kept, *(text for recipe in self.done for text in recipe.documents))
+
+    def changed_by(self, recipe: Recipe) -> "EditedEstimate":
         """The same with one more change."""
-        return replace(self, changes=(*self.changes, change))
+        bare = replace(self, changes=(), done=())
+        change = recipe.for_face(Face(Held(bare), self.done, self.changes))
+        return replace(self, changes=(*self.changes, change), done=(*self.done, recipe))
 
     def with_capture(
         self, capture: Map | None, notes: Mapping[str, str] | None = None
@@ -573,11 +600,6 @@ class Recolouring:
         if self._relight is not None:
             return np.ones(skin.shape, dtype=bool), self._relight(before, after, source)
         return colours.changes(self._model, self._calibration, before, after, source)
-
-
-def _part(tile: Tile, rows: slice) -> Tile:
-    sigmas = {name: values[rows] for name, values in tile.sigmas.items()}
-    return Tile(tile.maps.rows(rows), sigmas, tile.clamped)
 
 
 def _edit(name: str, operation: str, amount: ArrayLike) -> Edit:

@@ -4,9 +4,11 @@ Parameter maps are data, not colour: no transfer function ever touches them. The
 is not copied; the header names it (relative to the EXR) and its SHA-256, so that an edit can find
 it again and refuses another file. Of edited maps, what the estimate was before is kept as
 `original.<map>`: the capture shows the skin before the edit, so its colours change by the ratio of
-the two, however often the maps are saved and edited again. Standard deviations `<map>.sigma` and
-`confidence` are stored as half in any case, which is more than they are known to. The model is
-named with its digest.
+the two, however often the maps are saved and edited again; the looks that were applied are kept as
+documents. Where the values of the five maps lie (`Quantiles`) is kept too, and which tiles the face
+has: looks take medians over all of it, whichever part is at hand. Standard deviations
+`<map>.sigma` and `confidence` are stored as half in any case, which is more than they are known to.
+The model is named with its digest.
 """
 
 import contextlib
@@ -22,6 +24,7 @@ import numpy as np
 from cutis.errors import CutisError
 from cutis.inverse.calibration import Calibration
 from cutis.inverse.model import State
+from cutis.maps.statistics import MapStatistics, Quantiles
 from cutis.maps.trust import CONFIDENCE, SIGMA
 from cutis.optics import NAMES, PARAMETERS, RARE
 from cutis.textures.channels import channel_writer
@@ -44,6 +47,8 @@ class Header:
 
     `sigmas` names the maps that have a σ, `confident` says whether there is a confidence, `changed`
     names the maps that edits may have changed, `rare` the rare chromophores that have a map.
+    `looks` are the documents of what was applied, `tiles` the numbers of all tiles of a UDIM set
+    that this is one of. `quantiles` is what the writer found, None in files from before.
     """
 
     model: str
@@ -57,6 +62,9 @@ class Header:
     confident: bool = False
     changed: tuple[str, ...] = ()
     rare: tuple[str, ...] = ()
+    looks: tuple[str, ...] = ()
+    tiles: tuple[int, ...] = ()
+    quantiles: Quantiles | None = None
 
     def attributes(self, path: str | os.PathLike[str]) -> dict[str, str | float | int]:
         """The attributes of an EXR at `path`."""
@@ -72,6 +80,10 @@ class Header:
             found[f"{PREFIX}survey"] = json.dumps(dict(self.state))
         if self.edits:
             found[f"{PREFIX}edits"] = json.dumps(list(zip(self.edits, self.clamped, strict=True)))
+        if self.looks:
+            found[f"{PREFIX}looks"] = json.dumps([json.loads(look) for look in self.looks])
+        if self.tiles:
+            found[f"{PREFIX}tiles"] = " ".join(map(str, self.tiles))
         for key, value in self.provenance.items():
             found[f"{PREFIX}{key}"] = _from_folder(value, path) if key in PATHS else value
         return found
@@ -89,7 +101,7 @@ def save_maps(
     header = Header(
         made.name, made.digest, skin.calibration, skin.provenance, skin.estimate.state,
         skin.edits, skin.clamped, tuple(skin.sigmas), skin.confidence is not None, changed,
-        skin.rare,
+        skin.rare, skin.documents, tuple(skin.estimate.tile.files),
     )  # fmt: skip
     with maps_writer(path, header, skin.shape, dtype) as write:
         for rows in bands(skin.shape):
@@ -113,11 +125,13 @@ def maps_writer(
     trust = (*(name + SIGMA for name in header.sigmas),)
     trust += (CONFIDENCE,) if header.confident else ()
     names = (*maps, *(ORIGINAL + name for name in changed), *trust)
-    attributes = header.attributes(path)
+    attributes, found = header.attributes(path), MapStatistics()
+    late = {f"{PREFIX}quantiles": lambda: found.quantiles().text()}
     frame = noted_frame(header.provenance.get("window", ""), shape)
-    with channel_writer(path, names, shape, dtype, attributes, trust, frame) as put:
+    with channel_writer(path, names, shape, dtype, attributes, trust, frame, late) as put:
 
         def write(part: "SkinMaps") -> None:
+            found.add(part.coordinates(), part.mask > 0)
             channels: dict[str, Any] = {name: part.map(name) for name in maps[:-1]}
             channels["mask"] = part.mask
             for name in changed:

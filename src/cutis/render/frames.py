@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cutis.errors import CutisError
-from cutis.maps import Edit
+from cutis.maps import Edit, Edits
 from cutis.optics import parameter
 
 RANGE = re.compile(r"^([x×*+=]?)(-?[0-9.eE+-]+?)\.\.(-?[0-9.eE+-]+)$")
@@ -23,7 +23,7 @@ class Frame:
 
     number: int
     turn: float = 0.0
-    edits: tuple[Edit, ...] = ()
+    edits: Edits = ()
     label: str = ""
 
 

@@ -121,16 +121,20 @@ class Skin(Closing):
         """Some rows, changed; CutisError for edits of a texture, which has no maps."""
         if self.maps is None:
             if changes:
-                raise CutisError(
-                    f"{self.path.name} is a texture; edits need its maps (NAME{MAPS}), which "
-                    "cutis estimate makes"
-                )
+                raise self.no_maps()
             assert self.capture is not None
             return Rows(_clipped(self.capture.rows(rows).linear()), None)
         skin = self.maps.edited(rows, changes, trust=False)
         if self.capture is not None:
             skin = skin.with_capture(self.capture.rows(rows).linear())
         return Rows(_clipped(skin.calibration.apply(skin.albedo())), skin)
+
+    def no_maps(self) -> CutisError:
+        """What to raise when a texture is to be edited."""
+        return CutisError(
+            f"{self.path.name} is a texture; edits need its maps (NAME{MAPS}), which cutis "
+            "estimate makes"
+        )
 
 
 def _clipped(colours: NDArray[np.float32]) -> NDArray[np.float32]:

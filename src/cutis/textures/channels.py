@@ -24,6 +24,7 @@ from cutis.textures.texture import bands
 _TOGETHER = 8  # rows that are put together at a time, so that they stay in the processor's cache
 Metadata = dict[str, str | float | int]
 Value = str | float | int | tuple[float, ...]
+_HEADER = 64 << 20  # bytes of a file among which its header is
 _INT = range(-(2**31), 2**31)
 # Attributes of the file rather than of its maker.
 _HOUSEKEEPING = ("oiio:", "openexr:", "screenwindow")
@@ -63,12 +64,14 @@ def channel_writer(
     metadata: Mapping[str, Value] | None = None,
     half: Collection[str] = (),
     frame: Frame | None = None,
+    late: Mapping[str, Callable[[], str]] | None = None,
 ) -> Iterator[Callable[[Mapping[str, NDArray[np.generic]]], None]]:
     """What `write_channels` does, some rows at a time.
 
     Yields a function that takes the next rows, top to bottom: arrays (h, W) by name. `half` names
     channels that are stored as half whatever `dtype` says, `frame` where the texels lie on their
-    picture: it becomes the windows.
+    picture: it becomes the windows. `late` are texts for the header that are known only when all
+    rows have come: each is called at the start and at the end, and gives as many bytes of ASCII.
     """
     path, (height, width) = Path(path), shape
     if path.suffix.lower() != ".exr":
@@ -96,8 +99,15 @@ def channel_writer(
             raise problem(path, f"metadata {name} = {value} exceeds 32 bits; give it as text")
         spec.attribute(name, int(value) if isinstance(value, int) else value)
     kind = np.dtype(np.float32 if dtype == "float" else np.float16)
+    first = {name: text() for name, text in (late or {}).items()}
+    for name, held in first.items():
+        spec.attribute(name, held)
 
-    with encoder(path, "openexr", spec) as sink:
+    def finish(temporary: Path) -> None:
+        for name, text in (late or {}).items():
+            _put_late(temporary, name, first[name], text())
+
+    with encoder(path, "openexr", spec, finish) as sink:
 
         def write(part: Mapping[str, NDArray[np.generic]]) -> None:
             rows = len(next(iter(part.values())))
@@ -116,6 +126,20 @@ def channel_writer(
             sink.write(pixels)
 
         yield write
+
+
+def _put_late(path: Path, name: str, held: str, text: str) -> None:
+    """Puts a text in place of one of as many bytes in the header of a file, which is not packed."""
+    before, after = held.encode("ascii"), text.encode("ascii")
+    # OpenEXR: name, NUL, "string", NUL, length in 4 bytes, value
+    start = b"\0".join((name.encode("ascii"), b"string", b""))
+    mark = start + len(before).to_bytes(4, "little") + before
+    with path.open("r+b") as file:
+        place = file.read(_HEADER).find(mark)
+        if place < 0 or len(before) != len(after):
+            raise problem(path, f"its header has no place for {name}; report this")
+        file.seek(place + len(mark) - len(before))
+        file.write(after)
 
 
 class ChannelFile(Closing):

@@ -60,7 +60,7 @@ class Statement:
 
 
 def cicp(chunks: dict[bytes, bytes]) -> Iterator[Statement]:
-    """PNG's coding-independent code points, which come first of all [png3]."""
+    """PNG's coding-independent code points, which come first of all [png]."""
     if b"cICP" not in chunks:
         return
     where, code = "its cICP", chunks[b"cICP"]
@@ -93,7 +93,7 @@ def cicp(chunks: dict[bytes, bytes]) -> Iterator[Statement]:
 
 
 def png_chunks(chunks: dict[bytes, bytes]) -> Iterator[Statement]:
-    """sRGB, then gAMA and cHRM [png3]. A gamma of 2.2 of Rec.709 is what sRGB files say too."""
+    """sRGB, then gAMA and cHRM [png]. A gamma of 2.2 of Rec.709 is what sRGB files say too."""
     if b"sRGB" in chunks:
         yield Statement("its sRGB chunk", SRGB)
     there = [name for name in (b"gAMA", b"cHRM") if name in chunks]

@@ -3,7 +3,7 @@
 import contextlib
 import os
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -37,10 +37,16 @@ def encode(path: Path, file_format: str, spec: oiio.ImageSpec, pixels: Pixels) -
 
 
 @contextlib.contextmanager
-def encoder(path: Path, file_format: str, spec: oiio.ImageSpec) -> Iterator["Encoder"]:
+def encoder(
+    path: Path,
+    file_format: str,
+    spec: oiio.ImageSpec,
+    finish: Callable[[Path], None] | None = None,
+) -> Iterator["Encoder"]:
     """An `Encoder` of `path`, which gets its final name when the block ends well.
 
-    "tx" makes a tiled texture with all MIP levels of what is written.
+    "tx" makes a tiled texture with all MIP levels of what is written. `finish` is shown the file
+    when all rows are in it, before it gets that name.
     """
     check_name(path)
     with replacing(path) as temporary:
@@ -58,6 +64,8 @@ def encoder(path: Path, file_format: str, spec: oiio.ImageSpec) -> Iterator["Enc
         else:
             with Encoder(path, str(temporary), file_format, spec) as sink:
                 yield sink
+        if finish is not None:
+            finish(temporary)
         _check_whole(path, temporary, file_format)
 
 

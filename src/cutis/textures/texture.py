@@ -55,6 +55,21 @@ class Texture:
             raise CutisError(f"pixels must be one of {types}, not {self.pixels.dtype}")
         colour_channels(self.channels)
 
+    def __repr__(self) -> str:
+        height, width = self.shape
+        name = "" if self.path is None else f" {self.path.name},"
+        return (
+            f"<texture{name} {width} × {height} {self.pixels.dtype} {','.join(self.channels)} in "
+            f"{self.space.name} ({self.origin})>"
+        )
+
+    def _repr_html_(self) -> str:
+        """A thumbnail, for notebooks."""
+        from cutis.textures.thumbnail import LONGEST, picture_html
+
+        step = max(1, -(-max(self.shape) // LONGEST))
+        return picture_html(replace(self, pixels=self.pixels[::step, ::step]).linear(), repr(self))
+
     @property
     def shape(self) -> tuple[int, int]:
         """Height and width in texels."""

@@ -49,6 +49,16 @@ def udim_tiles(pattern: Path) -> dict[int, Path]:
     return tiles
 
 
+def tile_numbers(paths: Sequence[Path]) -> tuple[int, ...]:
+    """Numbers of files that are the tiles of one texture, in order; none where they are not."""
+    patterns = {udim_pattern(path) for path in paths}
+    pattern = patterns.pop() if len(patterns) == 1 and len(paths) > 1 else None
+    if pattern is None:
+        return ()
+    head = len(pattern.name.partition(TOKEN)[0])
+    return tuple(sorted(int(path.name[head : head + 4]) for path in paths))
+
+
 def missing_tiles(numbers: Sequence[int]) -> list[int]:
     """Numbers left out in a row of tiles between its first and its last."""
     missing = []

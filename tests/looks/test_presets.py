@@ -3,7 +3,8 @@
 import pytest
 
 from cutis.errors import CutisError
-from cutis.maps import Edit, presets
+from cutis.looks import Look, presets
+from cutis.maps import Edit
 
 
 def multiply(name, factor):
@@ -33,12 +34,25 @@ AMOUNTS = {
 
 
 def test_amounts():
-    assert presets.PRESETS == AMOUNTS
     for name, expected in AMOUNTS.items():
-        assert presets.preset(name) == expected
-        assert getattr(presets, name.replace("-", "_")) == expected
+        found = presets.preset(name)
+        assert found.name == name
+        assert found.note
+        assert found.layers == Look.of(expected).layers
+        assert getattr(presets, name.replace("-", "_")) is found
 
 
 def test_an_unknown_preset_lists_the_known():
-    with pytest.raises(CutisError, match=r"unknown preset 'sunburn'; known are .*tanning"):
-        presets.preset("sunburn")
+    with pytest.raises(CutisError, match=r"unknown preset 'kelp'; known are .*tanning"):
+        presets.preset("kelp")
+    with pytest.raises(CutisError, match=r"did you mean flushing\?"):
+        presets.preset("flush")
+    with pytest.raises(AttributeError):
+        _ = presets.kelp
+
+
+def test_all_are_listed():
+    assert set(AMOUNTS) <= set(presets.names())
+    assert {name.replace("-", "_") for name in presets.names()} <= set(dir(presets))
+    for name in presets.names():
+        assert presets.preset(name).note, f"{name} does not say where its amounts are from"

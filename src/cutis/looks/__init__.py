@@ -1,0 +1,38 @@
+"""Looks: edits of a skin as documents with layers and masks, which do the same anywhere."""
+
+from cutis.looks import presets
+from cutis.looks.edits import (
+    Blend,
+    Ceiling,
+    Contrast,
+    Floor,
+    Multiply,
+    Offset,
+    Set,
+    Soften,
+)
+from cutis.looks.layer import Layer
+from cutis.looks.look import Look, asked, nothing
+from cutis.looks.masks import MaskPart
+from cutis.looks.pictures import PicturePart, RegionsPart
+from cutis.looks.ranges import RangePart
+
+__all__ = [
+    "Blend",
+    "Ceiling",
+    "Contrast",
+    "Floor",
+    "Layer",
+    "Look",
+    "MaskPart",
+    "Multiply",
+    "Offset",
+    "PicturePart",
+    "RangePart",
+    "RegionsPart",
+    "Set",
+    "Soften",
+    "asked",
+    "nothing",
+    "presets",
+]
