@@ -186,7 +186,7 @@ def test_other_tissues_have_their_own_parameters():
     ],
 )
 def test_what_cannot_be_fitted_is_said(change, words):
-    arguments = {"wavelengths": VISIBLE, **change}
+    arguments = {"wavelengths": VISIBLE, "tissue": ALIAGA2022, **change}
     with pytest.raises(CutisError, match=words):
         SpectralFitter(**arguments)
 
