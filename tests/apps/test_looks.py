@@ -212,3 +212,44 @@ def test_a_missing_tile_of_the_set_is_said(set_of_maps, cutis, one_line, tmp_pat
                   tmp_path / "face.1002.exr", "--look", tmp_path / "spring.look.json",
                   "-o", tmp_path / "a.exr")  # fmt: skip
     assert "is a tile of the same face and is not there" in one_line(ended)
+
+
+def test_an_animation_is_of_edits_of_every_amount(maps, cutis, tmp_path):
+    out = tmp_path / "flush.png"
+    flags = ("--preset", "flushing", "--melanin", "x2", "-q")
+    ended = cutis("edit", maps, *flags, "--amount", "0..0.8", "--frames", "5", "-o", out)
+    assert (ended.code, ended.err, ended.out) == (0, "", "")
+    frames = [tmp_path / f"flush.000{number}.png" for number in range(1, 6)]
+    for amount, frame in zip(np.linspace(0, 0.8, 5), frames, strict=True):
+        assert cutis("edit", maps, *flags, "--amount", amount, "-o", out).code == 0
+        assert frame.read_bytes() == out.read_bytes()
+    assert len({frame.read_bytes() for frame in frames}) == 5
+    with Image.open(tmp_path / "flush.webp") as film:
+        assert (film.n_frames, film.size) == (5, (32, 24))
+
+
+def test_an_animation_of_a_set_has_no_film(set_of_maps, cutis, tmp_path):
+    ended = cutis("edit", set_of_maps, "--melanin", "x2", "--amount", "1..0", "--frames", "2",
+                  "-o", tmp_path / "fade.<UDIM>.exr")  # fmt: skip
+    assert (ended.code, ended.err) == (0, "")
+    assert "wrote 6 pictures\n" in ended.out
+    assert (tmp_path / "fade.1011.0002.exr").is_file()
+    assert not list(tmp_path.glob("*.webp"))
+
+
+@pytest.mark.parametrize(
+    ("flags", "said"),
+    [
+        (("--amount", "0..2"), "--amount is a number from 0 to 1, or a range such as 0..1"),
+        (("--amount", "nan"), "--amount is a number from 0 to 1"),
+        (("--amount", "a lot"), "not 'a lot'"),
+        (("--amount", "0..1", "--frames", "1"), "2 to 10000 pictures, not 1"),
+        (("--frames", "3"), "--frames is of a range of amounts"),
+        (("--amount", "0..1", "--save-maps", "m.skin.exr"), "a sequence is of pictures"),
+        (("--amount", "0..1", "--save-look", "a.look.json"), "a look has one amount"),
+    ],
+)
+def test_bad_animations_are_one_line(flags, said, maps, cutis, one_line, tmp_path):
+    out = tmp_path / "a.png"
+    assert said in one_line(cutis("edit", maps, "--melanin", "x2", "-o", out, *flags))
+    assert not list(tmp_path.glob("a.*"))
