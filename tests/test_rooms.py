@@ -23,6 +23,7 @@ ROOMS = (
     "looks",
     "luts",
     "report",
+    "checks",
     "render",
     "jobs",
     "apps",
