@@ -45,3 +45,12 @@ def test_means_are_those_of_the_mask():
     assert found.tallies.top == 8
     np.testing.assert_allclose(found.picture[:, :2], 1)
     np.testing.assert_array_equal(found.cover, mask)
+
+
+def test_any_size():
+    for shape in ((1, 1), (1, 5000), (5000, 1), (3, 385), (770, 769)):
+        found = gathered(np.full((*shape, 3), 7, np.uint8), np.ones(shape, np.float32), [shape[0]])
+        assert found.sure.all()
+        assert found.picture.shape[:2] == found.cover.shape
+        assert len(found.places) == found.cover.size
+        np.testing.assert_array_equal(found.places.max(axis=0) + 1, found.cover.shape)

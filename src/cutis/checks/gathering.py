@@ -140,8 +140,10 @@ class Gathering:
     def _reduce(self, first: int, linear: Map, cover: Map) -> None:
         """Adds to the means of blocks; of large blocks three texels a side are enough."""
         stride = max(1, self._step // 3)
-        rows = np.arange(-first % stride, len(cover), stride)
-        columns = np.arange(0, self.shape[1], stride)
+        rows = np.arange(len(cover))
+        rows = rows[(first + rows) % self._step % stride == 0]
+        columns = np.arange(self.shape[1])
+        columns = columns[columns % self._step % stride == 0]
         weights = cover[np.ix_(rows, columns)].astype(np.float64)
         colours = linear[np.ix_(rows, columns)] * weights[..., None]
         starts = np.flatnonzero(np.diff(columns // self._step, prepend=-1))
@@ -155,10 +157,10 @@ class Gathering:
 
     def _pick(self, first: int, stored: np.ndarray, linear: Map, inside: np.ndarray) -> None:
         """One texel of each block, the middle one."""
-        start = self._step // 2
-        rows = np.arange((start - first) % self._step, len(linear), self._step)
-        columns = np.arange(start, self.shape[1], self._step)
-        if not len(rows) or not len(columns):
+        rows = _middles(self.shape[0], self._step) - first
+        rows = rows[(rows >= 0) & (rows < len(linear))]
+        columns = _middles(self.shape[1], self._step)
+        if not len(rows):
             return
         where = np.ix_(rows, columns)
         grid = np.stack(
@@ -190,6 +192,11 @@ class Gathering:
             self.shape, self.stored, self._tallies, self._step, picture, cover, texels, values,
             places, sure, windows, (top, right, bottom, left), self.masked,
         )  # fmt: skip
+
+
+def _middles(size: int, step: int) -> np.ndarray:
+    """The middle of each block along a side; of one that is cut off the last texel at most."""
+    return np.minimum(np.arange(step // 2, size + step // 2, step), size - 1)
 
 
 def _starts(size: int) -> list[int]:
