@@ -14,7 +14,8 @@ import pytest
 import cutis as package
 from cutis.colour import light
 from cutis.jobs import CaptureFiles, EditJob, EstimateJob, ExportJob, FitJob
-from cutis.jobs.render import MaterialJob, RenderJob, Subject
+from cutis.jobs.render import MaterialJob, RenderJob
+from cutis.jobs.subject import Subject
 from cutis.maps import Edit, load_maps, load_model
 from cutis.optics import ALIAGA2022
 from cutis.textures import Texture, colour_space, read_channels, write_texture
