@@ -13,6 +13,7 @@ import pytest
 
 import cutis as package
 from cutis.colour import light
+from cutis.inverse import Calibration
 from cutis.jobs import CaptureFiles, EditJob, EstimateJob, ExportJob, FitJob
 from cutis.jobs.render import MaterialJob, RenderJob
 from cutis.jobs.subject import Subject
@@ -35,8 +36,10 @@ ESTIMATE = {
     "half": ({"half": True}, ("--half",)),
     "sigma": ({"sigma": False}, ("--no-sigma",)),
     "page": ({"page": True}, ("--report",)),
+    "orientation": ({"orientation": "ignore"}, ("--orientation", "ignore")),
     "again": ({"again": True}, ("--again",)),
 }
+GAINS = Calibration((1.1, 1.0, 0.9), "given")
 EDIT = {
     "maps": ({}, ()),
     "output": ({}, ()),
@@ -46,6 +49,7 @@ EDIT = {
     "source": ({"source": "face.png"}, ("--source", "face.png")),
     "light": ({"light": "FL11"}, ("--illuminant", "FL11")),
     "model": ({"model": "lookup"}, ("--method", "lookup")),
+    "calibration": ({"calibration": GAINS}, ("--calibration", "1.1,1,0.9")),
     "space": ({"space": "linear"}, ("--output-colorspace", "linear")),
     "save_maps": ({"save_maps": "kept.skin.exr"}, ("--save-maps", "kept.skin.exr")),
 }

@@ -196,7 +196,7 @@ class MaterialJob:
         g = scene.anisotropy
         with made_folder(self.folder), subject.opened() as (skin, changes):
             sweep(self.folder)
-            red, green, blue = (float(length) for length in mean_free_path(g, skin.tissue))
+            red, green, blue = (float(length) for length in mean_free_path(skin.tissue, g))
             everywhere = subject.radius == "tissue"
             files = export_material(
                 skin, self.folder, skin.stem,
@@ -247,7 +247,7 @@ def _feed(
 ) -> None:
     """Writes the textures of one tile."""
     g = subject.scene.anisotropy
-    everywhere = mean_free_path(tissue=skin.tissue)
+    everywhere = mean_free_path(skin.tissue)
     if subject.radius == "maps" and skin.maps is None:
         raise CutisError(
             f"{subject.skin.name} is a texture; --radius maps needs its maps (NAME{MAPS}), "
@@ -297,7 +297,7 @@ def _recipe(
         },
         "scene": job,
         "files": digests,
-        "medium": [METHOD, INDEX, *facing(g), *mean_free_path(g, tissue).tolist()],
+        "medium": [METHOD, INDEX, *facing(g), *mean_free_path(tissue, g).tolist()],
         "first_turn": scene.turn,
     }
 
