@@ -48,13 +48,13 @@ def given_calibration(text: str, tissue: Tissue) -> Calibration:
     Raises CutisError, one line, for anything else.
     """
     if not text.endswith(".json"):
-        return calibrate(np.ones((1, 3)), _gains(text), tissue=tissue)
+        return calibrate(np.ones((1, 3)), tissue, _gains(text))
     stored = _report(Path(text))["calibration"]
     try:
         gains, light = [float(gain) for gain in stored["gains"]], str(stored["illuminant"])
     except (ValueError, KeyError, TypeError, OverflowError) as error:
         raise problem(text, "has no calibration; give three gains") from error
-    return calibrate(np.ones((1, 3)), gains, light=light, tissue=tissue)
+    return calibrate(np.ones((1, 3)), tissue, gains, light=light)
 
 
 def _gains(text: str) -> list[float]:
