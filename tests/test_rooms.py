@@ -25,6 +25,7 @@ ROOMS = (
     "report",
     "render",
     "jobs",
+    "studio",
     "apps",
 )
 """A room may import itself, those before it and SHARED."""

@@ -19,6 +19,7 @@ from cutis.apps import (
     render,
     simulate,
     spectrum,
+    studio,
     train,
 )
 from cutis.apps.edit_flags import InOrder
@@ -59,6 +60,7 @@ app.command("estimate")(estimate.estimate)
 app.command("edit", cls=InOrder)(edit.edit)
 app.command("render", cls=InOrder)(render.render)
 app.command("export", cls=InOrder)(export.export)
+app.command("studio")(studio.studio)
 app.command("spectrum")(spectrum.spectrum)
 app.command("fit")(fit.fit)
 app.command("simulate")(simulate.simulate)
