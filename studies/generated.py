@@ -39,9 +39,11 @@ MANIFEST = ROOT / "docs" / "generated.json"
 MAKERS = {
     "studies.build_colour_tables": ["src/cutis/data/colour/*.csv"],
     "studies.build_albedo_table": ["src/cutis/data/albedo/*.npz"],
-    "studies.train_prior": ["src/cutis/data/weights/measured2026-prior.npz"],
+    "studies.train_prior": ["src/cutis/data/weights/*-prior.npz"],
     "studies.build_weights": [
         "src/cutis/data/weights/measured2026.npz",
+        "src/cutis/data/weights/measured2026b.npz",
+        "src/cutis/data/weights/measured2026b-trust.npz",
         "src/cutis/data/weights/measured2026-trust.npz",
         "src/cutis/data/weights/aliaga2022-exact.npz",
     ],

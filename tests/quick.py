@@ -101,7 +101,7 @@ class Clock:
         self.took[report.nodeid] = self.took.get(report.nodeid, 0.0) + report.duration
 
     def pytest_sessionfinish(self, session: pytest.Session) -> None:
-        cache = session.config.cache
+        cache = getattr(session.config, "cache", None)  # none with -p no:cacheprovider
         if cache is not None and not hasattr(session.config, "workerinput"):
             took = {name: round(seconds, 3) for name, seconds in self.took.items()}
             cache.set("cutis/seconds", cache.get("cutis/seconds", {}) | took)

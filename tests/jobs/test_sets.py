@@ -159,7 +159,8 @@ def test_results_beside_captures_are_not_captures(show, cutis):
 
 
 @pytest.mark.slow
-def test_kills_lose_nothing(tiles, tmp_path, process):
+@pytest.mark.parametrize("kills", [2, pytest.param(6, marks=pytest.mark.long)])
+def test_kills_lose_nothing(kills, tiles, tmp_path, process):
     """kill -9 at random moments: what is there is whole, and the next run completes the set."""
     out = tmp_path / "out"
     arguments = ["estimate", str(tiles), "-o", str(out), "--exposure", "auto", "--quiet"]
@@ -171,7 +172,7 @@ def test_kills_lose_nothing(tiles, tmp_path, process):
     whole = written(out)
     for path in out.iterdir():
         path.unlink()
-    for _ in range(5):
+    for _ in range(kills):
         with subprocess.Popen([sys.executable, "-c", MAIN, *arguments], env={**os.environ}) as run:
             time.sleep(dice.uniform(0.3, 1) * usual)
             run.send_signal(signal.SIGKILL)

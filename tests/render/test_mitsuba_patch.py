@@ -17,7 +17,14 @@ LEVEL = 1e-3
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("g", "every"), [(0.0, 1), (0.7, 5)])
+@pytest.mark.parametrize(
+    ("g", "every"),
+    [
+        (0.0, 3),
+        (0.7, 8),
+        *(pytest.param(*how, marks=pytest.mark.long) for how in [(0.0, 1), (0.7, 5)]),
+    ],
+)
 def test_patches_of_skin_return_the_albedo_asked_for(g, every):
     """24 skins from very light to very dark; fewer where a walk takes longer.
 

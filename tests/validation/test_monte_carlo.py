@@ -20,8 +20,14 @@ LEVEL = 0.01
 TESTS = 2 * 4 + 5
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
-@pytest.mark.parametrize("index", [1.0, 1.4])
+@pytest.mark.parametrize(
+    ("dimension", "index"),
+    [
+        (2, 1.0),
+        (3, 1.4),
+        *(pytest.param(*how, marks=pytest.mark.long) for how in [(2, 1.4), (3, 1.0)]),
+    ],
+)
 def test_random_skins(dimension, index):
     """Every skin within the walk's own error (Bonferroni), and all of them together (χ²)."""
     rng = np.random.default_rng(10 * dimension + int(index > 1))

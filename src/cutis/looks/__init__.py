@@ -16,6 +16,7 @@ from cutis.looks.look import Look, asked, nothing
 from cutis.looks.masks import MaskPart
 from cutis.looks.pictures import PicturePart, RegionsPart
 from cutis.looks.ranges import RangePart
+from cutis.looks.strokes import Stroke, StrokesPart
 
 __all__ = [
     "Blend",
@@ -32,6 +33,8 @@ __all__ = [
     "RegionsPart",
     "Set",
     "Soften",
+    "Stroke",
+    "StrokesPart",
     "asked",
     "nothing",
     "presets",
