@@ -36,6 +36,7 @@ class Running:
     folder: Path
     port: int
     token: str
+    said: str = ""
 
     @property
     def site(self) -> str:
@@ -58,10 +59,14 @@ def start(folder: Path, *arguments: str) -> Running:
         cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
     )  # fmt: skip
     assert process.stdout is not None
-    line = process.stdout.readline()
-    assert line.startswith("http://127.0.0.1:"), line + process.stdout.read()
-    port, token = line.strip().removeprefix("http://127.0.0.1:").split("/?token=")
-    return Running(process, folder, int(port), token)
+    line, said = process.stdout.readline(), ""
+    while line.startswith("warning"):
+        line, said = process.stdout.readline(), said + line
+    if not line.startswith("http://127.0.0."):
+        process.kill()
+        raise AssertionError(line + process.stdout.read())
+    host, token = line.strip().removeprefix("http://").split("/?token=")
+    return Running(process, folder, int(host.rpartition(":")[2]), token, said)
 
 
 def stop(running: Running) -> None:

@@ -75,7 +75,7 @@ def test_a_smaller_view_is_near_the_edit_made_smaller(workshop, skin):
     every = skin.apply(wanted).albedo()
     mean = every.reshape(100, 2, 120, 2, 3).mean((1, 3))
     error = delta_e(drawn, mean)
-    assert np.percentile(error, 99) < 0.5
+    assert np.percentile(error, 95) < 0.5
     assert np.median(error) < 0.1
 
 

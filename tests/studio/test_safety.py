@@ -147,7 +147,7 @@ def test_nothing_is_taken_but_questions(running, method):
 def test_sockets_of_others_are_refused(running, origin, cookie, host):
     with pytest.raises(InvalidStatus) as refused, socket_of(running, origin, cookie, host):
         pass
-    assert refused.value.response.status_code in (401, 403)
+    assert refused.value.response.status_code in (400, 401, 403)
 
 
 def test_there_is_one_socket(running):
@@ -183,6 +183,7 @@ def test_the_page_asks_nobody_else():
     for name, path in files.items():
         if not name.startswith("vendor/"):
             text = path.read_text("utf-8").replace("http://www.w3.org/2000/svg", "")
+            text = re.sub(r"/\*.*?\*/|^//.*?$", "", text, flags=re.S | re.M)
             assert not re.search(r"https?://|\bimport\(|innerHTML|localStorage|indexedDB|"
                                  r"sessionStorage|caches\.|eval\(|serviceWorker", text), name  # fmt: skip
             assert not re.search(r"<style|style=|onclick=|<script>", text) or path.suffix == ".js"
@@ -257,7 +258,7 @@ def test_masks_in_files_cannot_be_named_by_the_page(running):
         opened(link)
         answer = ask(link, t="do", op={"op": "add", "layers": [layer]})
         assert answer["t"] == "error"
-        assert "file" in answer["text"]
+        assert "cannot name" in answer["text"]
 
 
 def test_only_what_is_listed_opens(running):
@@ -381,6 +382,7 @@ def test_another_host_is_warned_of_and_needs_the_token(tmp_path):
     small_face(tmp_path)
     running = start(tmp_path, "face.png", "--host", "127.0.0.2")
     try:
+        assert "can be reached by other machines" in running.said
         site = f"http://127.0.0.2:{running.port}"
         assert httpx.get(site).status_code == 401
         assert httpx.get(f"{site}/?token={running.token}").status_code == 303

@@ -23,6 +23,9 @@ def studio(
     model: options.ModelName = "default",
     colorspace: options.Colorspace = "auto",
     ocio: options.Ocio = None,
+    look: Annotated[
+        Path | None, typer.Option("--look", help="Begin with this look, NAME.look.json.")
+    ] = None,
     port: Annotated[int, typer.Option(min=0, max=65535, help="0 takes one that is free.")] = 0,
     host: Annotated[
         str, typer.Option(help="Another address than this machine's own; others can then connect.")
@@ -41,6 +44,7 @@ def studio(
     from cutis.apps.console import err
 
     needed()
+    from cutis.looks import Look
     from cutis.studio.files import Files
     from cutis.studio.opening import Opening
     from cutis.studio.server import LOOPBACK, serve
@@ -48,6 +52,7 @@ def studio(
     like = Opening(
         Path(), mask, options.white_gains(white), options.exposure_gain(exposure),
         options.model_of(model), options.source_space(colorspace, ocio),
+        look=None if look is None else Look.load(look),
     )  # fmt: skip
     named, folder = openings(faces or [], like)
     if host not in (LOOPBACK, "localhost", "::1"):

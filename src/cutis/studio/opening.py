@@ -28,7 +28,8 @@ KEPT = 16
 class Opening:
     """What is to be opened: a capture, or maps NAME.skin.exr, and how a capture is estimated.
 
-    What is `bundled` with cutis gets no files beside it.
+    What is `bundled` with cutis gets no files beside it. A `look` takes the place of the one that
+    was last worked on.
     """
 
     path: Path
@@ -38,6 +39,7 @@ class Opening:
     model: Model | None = None
     colorspace: Space | None = None
     bundled: bool = False
+    look: Look | None = None
 
     @property
     def is_maps(self) -> bool:

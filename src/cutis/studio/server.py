@@ -52,7 +52,6 @@ class Studio:
         """The face of a number, opened where it is not; CutisError where that cannot be."""
         async with self._entering:
             if number not in self._open:
-                await self._close_unused()
                 opening = self.files.opening(number)
                 self._open[number] = await asyncio.to_thread(Workshop, opening)
                 self._tabs[number] = 0
@@ -60,14 +59,16 @@ class Studio:
             return self._open[number]
 
     async def leave(self, workshop: Workshop) -> None:
-        """A page goes; the face stays open, for it may come back, until another one is opened."""
+        """A page goes; the face stays open, for it may come back, unless another one is in use."""
         number = self._number(workshop)
-        if number is not None:
-            self._tabs[number] -= 1
-
-    async def _close_unused(self) -> None:
-        for number in [n for n, tabs in self._tabs.items() if tabs < 1]:
-            await self._close(number)
+        if number is None:
+            return
+        self._tabs[number] -= 1
+        async with self._entering:
+            used = any(tabs > 0 for tabs in self._tabs.values())
+            for one in [n for n, tabs in self._tabs.items() if tabs < 1]:
+                if used or one != number:
+                    await self._close(one)
 
     async def _close(self, number: int) -> None:
         workshop = self._open.pop(number)

@@ -18,6 +18,7 @@ from cutis.looks import Look
 from cutis.looks.document import MapName
 from cutis.looks.edits import MapEdit
 from cutis.looks.look import VERSION
+from cutis.looks.pictures import FilePart
 
 Id = Annotated[str, Field(pattern=r"^[0-9a-f]{8}$")]
 Document = dict[str, Any]
@@ -114,8 +115,10 @@ class State:
 
     @classmethod
     def of(cls, look: Look) -> "State":
-        """A look whose layers get new names."""
-        return cls(look, tuple(_new() for _ in look.layers))
+        """A look whose layers get new names; CutisError where masks are in files."""
+        state = cls(look, tuple(_new() for _ in look.layers))
+        _no_files(state)
+        return state
 
     def as_json(self) -> Document:
         """For a page."""
@@ -129,6 +132,11 @@ class State:
 
     def after(self, op: Op) -> "State":
         """The state with something done; CutisError, which names the place, where it cannot be."""
+        state = self._after(op)
+        _no_files(state)
+        return state
+
+    def _after(self, op: Op) -> "State":
         layers = [layer.as_json() for layer in self.look.layers]
         ids = list(self.ids)
         if isinstance(op, Whole):
@@ -188,6 +196,16 @@ def empty() -> State:
     return State.of(Look.of_text(json.dumps({
         "cutis_look": VERSION, "layers": [{"name": "Skin"}],
     }), "the look"))  # fmt: skip
+
+
+def _no_files(state: State) -> None:
+    """CutisError where masks name files: pages name none, and a history keeps none."""
+    for number, layer in enumerate(state.look.layers, 1):
+        if any(isinstance(part, FilePart) for part in layer.mask):
+            raise CutisError(
+                f"layer {number}: its mask is in a file, which the studio cannot name; paint it as "
+                "strokes, or edit with cutis edit --look"
+            )
 
 
 def _new() -> str:

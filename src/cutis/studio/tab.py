@@ -143,8 +143,8 @@ class Tab:
                 await self._send(protocol.packed({"t": "preset", "n": message.n, **head}, picture))
 
     async def _open(self, message: protocol.Open) -> None:
-        await self._leave()
         workshop = await self._studio.enter(message.file)
+        await self._leave()
         self._workshop = workshop
         workshop.watchers.append(self._changed)
         face = workshop.face

@@ -49,6 +49,9 @@ class Workshop:
         self.watchers: list[Callable[[], None]] = []
         self._lock, self._saving = threading.Lock(), threading.Lock()
         self.number, self.state = self.history.now()
+        if opening.look is not None and opening.look != self.state.look:
+            self.state = State.of(opening.look)
+            self.number = self.history.push(self.state, f"Loaded {opening.look.name}".strip())
         self.revision = 0
 
     def estimate(self, progress: Progress = nobody) -> None:

@@ -42,6 +42,10 @@ class Studio {
     this.point = null;
     this.reading = false;
     this.build();
+    this.stage.covered = () => {
+      const box = this.card.element.getBoundingClientRect();
+      return box.width ? box.width + 24 : 0;
+    };
     this.listen();
     this.link.connect();
   }
@@ -337,7 +341,10 @@ class Studio {
       "+": () => this.stage.step(1), "=": () => this.stage.step(1), "-": () => this.stage.step(-1),
       n: () => this.layers.add(), h: () => this.layers.toggle(), Delete: () => this.layers.remove(),
       "[": () => this.layers.step(-1), "]": () => this.layers.step(1), "?": () => this.keys.showModal(),
-      i: () => { this.card.element.hidden = !this.card.element.hidden; },
+      i: () => {
+        this.card.element.hidden = !this.card.element.hidden;
+        if (this.stage.fitted) this.stage.fit();
+      },
     };
     if (!sliding) Object.assign(acts, {
       ArrowLeft: () => this.stage.pan(by, 0), ArrowRight: () => this.stage.pan(-by, 0),

@@ -38,7 +38,7 @@ export class ReadingCard {
       if (!now) continue;
       const label = /** @type {Record<string, string>} */ (WORDS.maps)[known.name];
       const moved = !was || was[0] !== now[0];
-      rows.push(row(label, was ? withSigma(was, known) : "–", moved ? withSigma(now, known) : "", known.meaning));
+      rows.push(row(label, was ? withSigma(was, known) : "–", moved ? withSigma([now[0], null], known) : "", known.meaning));
     }
     const head = make("tr", {}, make("th", {}, `${reading.at[0]}, ${reading.at[1]}`),
       make("th", { scope: "col" }, WORDS.before), make("th", { scope: "col" }, same ? "" : WORDS.after));
@@ -74,7 +74,7 @@ function row(label, was, now, title) {
 
 /** @param {number[]} values @param {number} [digits] */
 function numbers(values, digits) {
-  return values.map((v) => (digits === undefined ? String(v) : v.toFixed(digits)).replace("-", "−")).join("  ");
+  return values.map((v) => (digits === undefined ? String(v) : v.toFixed(digits)).replace("-", "−")).join(" ");
 }
 
 /** @param {[number, number | null]} pair @param {Parameter} known */

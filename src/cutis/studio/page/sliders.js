@@ -36,7 +36,7 @@ export class Row extends EventTarget {
       make("div", { class: "line" },
         make("label", { for: id, title: `${known.meaning} (${known.symbol})` }, label),
         this.reset, this.how, this.number,
-        make("span", { class: "unit" }, known.unit === "1" ? "" : known.unit)),
+        this.unit = make("span", { class: "unit" })),
       this.range);
     this.range.addEventListener("input", () => this.slid(false));
     this.range.addEventListener("change", () => this.slid(true));
@@ -153,6 +153,7 @@ export class Row extends EventTarget {
       this.number.value = set ? shown(/** @type {number} */ (this.value), this.do) : "";
     }
     if (!sliding) this.range.value = String(Math.round(PLACES * (set ? this.shareOf(/** @type {number} */ (this.value)) : 0.5)));
+    this.unit.textContent = this.do === "multiply" || this.known.unit === "1" ? "" : this.known.unit;
     const idle = this.edit() === null;
     this.element.classList.toggle("idle", idle);
     this.reset.hidden = idle;

@@ -30,6 +30,8 @@ export class Stage extends EventTarget {
     /** @type {Map<string, Held>} */
     this.pictures = new Map();
     this.frame = 0;
+    /** Pixels of the page at the left that something covers. */
+    this.covered = () => 0;
     /** @type {Map<number, {x: number, y: number}>} */
     this.fingers = new Map();
     new ResizeObserver(() => this.resize()).observe(this.element);
@@ -63,7 +65,9 @@ export class Stage extends EventTarget {
     const { width, height } = this.canvas;
     this.scale = Math.min((width - 2 * margin) / this.size.width, (height - 2 * margin) / this.size.height);
     if (!(this.scale > 0)) this.scale = 0.01;
-    this.x = (width - this.scale * this.size.width) / 2;
+    const wide = this.scale * this.size.width;
+    const covered = this.covered() * this.ratio;
+    this.x = covered + wide + margin <= width ? Math.max((width - wide) / 2, covered + (width - covered - wide) / 2) : (width - wide) / 2;
     this.y = (height - this.scale * this.size.height) / 2;
     this.fitted = true;
     this.moved();
