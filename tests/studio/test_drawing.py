@@ -12,7 +12,8 @@ from cutis.studio.state import State
 
 LOOKS = {
     "plain": {"layers": [{"edits": [
-        {"do": "multiply", "map": "melanin", "by": 1.8}, {"do": "offset", "map": "blood", "by": 0.01},
+        {"do": "multiply", "map": "melanin", "by": 1.8},
+        {"do": "offset", "map": "blood", "by": 0.01},
     ]}]},
     "half": {"layers": [{"amount": 0.4, "edits": [{"do": "set", "map": "thickness", "to": 120}]}]},
     "range": {"layers": [{

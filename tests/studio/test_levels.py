@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from cutis.colour import encode_srgb
 from cutis.maps import MapsFile
 from cutis.optics import NAMES
-from cutis.studio.levels_kernel import halve
 from cutis.studio.drawing import codes
-from cutis.colour import encode_srgb
+from cutis.studio.levels_kernel import halve
 from cutis.textures import read_texture
 
 
@@ -65,4 +65,5 @@ def test_the_first_level_is_the_face(workshop):
 def test_levels_end_small_and_views_take_the_nearest(workshop):
     levels = workshop.face.levels
     assert [level.shape for level in levels.all] == [(200, 240), (100, 120), (50, 60), (25, 30)]
-    assert [levels.at(s).number for s in (8, 1, 0.7, 0.5, 0.3, 0.25, 0.001)] == [0, 0, 0, 1, 1, 2, 3]
+    numbers = [levels.at(scale).number for scale in (8, 1, 0.7, 0.5, 0.3, 0.25, 0.001)]
+    assert numbers == [0, 0, 0, 1, 1, 2, 3]

@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from tests.studio.conftest import PROGRAM, start, stop
+from tests.studio.conftest import PROGRAM, start, stop, until
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
 FLAGS = (
@@ -70,7 +70,8 @@ def colour(page, x=0.5, y=0.5):
           const d = c.getContext("2d");
           d.drawImage(canvas, 0, 0);
           const p = d.getImageData(x * c.width - 10, y * c.height - 10, 20, 20).data;
-          return [0, 1, 2].map((i) => p.filter((_, k) => k % 4 === i).reduce((a, b) => a + b) / 400);
+          const mean = (i) => p.filter((_, k) => k % 4 === i).reduce((a, b) => a + b) / 400;
+          return [0, 1, 2].map(mean);
         }""",
         [x, y],
     )
@@ -115,8 +116,7 @@ def test_dragging_draws_before_it_is_done(page):
     page.mouse.down()
     page.mouse.move(box["x"] + 0.9 * box["width"], y, steps=8)
     page.wait_for_function("performance.getEntriesByName('slider').length > 0")
-    page.wait_for_timeout(600)
-    assert sum(colour(page)) < 0.9 * sum(before)
+    until(lambda: sum(colour(page)) < 0.9 * sum(before))
     assert page.evaluate("document.body.dataset.revision") == revision
     page.mouse.up()
     drawn(page, revision)
@@ -154,14 +154,11 @@ def test_original_split_and_compare(page):
     revision = drawn(page, revision)
     after = colour(page)
     page.keyboard.down("\\")
-    page.wait_for_timeout(400)
-    assert colour(page) == pytest.approx(before, abs=1.5)
+    until(lambda: colour(page) == pytest.approx(before, abs=1.5))
     page.keyboard.up("\\")
-    page.wait_for_timeout(100)
-    assert colour(page) == pytest.approx(after, abs=1.5)
+    until(lambda: colour(page) == pytest.approx(after, abs=1.5))
     page.get_by_role("button", name="Split").click()
-    page.wait_for_timeout(400)
-    assert sum(colour(page, 0.45)) > sum(colour(page, 0.55)) + 30
+    until(lambda: sum(colour(page, 0.45)) > sum(colour(page, 0.55)) + 30)
     page.keyboard.press("e")
     page.keyboard.press("Control+z")
     drawn(page, revision)
@@ -220,7 +217,7 @@ def test_a_server_that_was_killed_has_every_edit(browser, folder):
             drawn(page, revision)
     finally:
         running.process.kill()
-        running.process.wait()
+        stop(running)
     running = start(folder, "face.png")
     try:
         for page in window(browser, running):

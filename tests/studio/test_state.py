@@ -4,7 +4,7 @@ import pytest
 from pydantic import TypeAdapter
 
 from cutis.errors import CutisError
-from cutis.studio.state import AnyOp, State, empty
+from cutis.studio.state import AnyOp, empty
 
 OPS = TypeAdapter(AnyOp)
 

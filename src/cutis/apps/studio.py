@@ -1,12 +1,15 @@
 """`cutis studio`: a live face in the browser."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from cutis.apps import options
 from cutis.errors import CutisError
+
+if TYPE_CHECKING:
+    from cutis.studio.opening import Opening
 
 
 def studio(
@@ -72,24 +75,25 @@ def needed() -> None:
         raise CutisError("the studio needs more packages: pip install 'cutis[studio]'")
 
 
-def openings(faces: list[Path], like: object) -> tuple[list[object], Path]:
+def openings(faces: list[Path], like: "Opening") -> "tuple[list[Opening], Path]":
     """What was named, and the folder whose pictures may be opened too."""
     from dataclasses import replace
 
-    named, folder = [], Path.cwd()
+    named: list[Opening] = []
+    folder = Path.cwd()
     for path in faces:
         if path.is_dir():
             folder = path
         elif not path.is_file():
             raise CutisError(f"{path}: no such file; check the name")
         else:
-            named.append(replace(like, path=path))  # type: ignore[type-var]
+            named.append(replace(like, path=path))
     if not faces:
         named.append(bundled(like))
     return named, folder
 
 
-def bundled(like: object) -> object:
+def bundled(like: "Opening") -> "Opening":
     """The capture that comes with a clone; of a package, the albedo of a head."""
     from dataclasses import replace
 
@@ -98,10 +102,10 @@ def bundled(like: object) -> object:
 
     examples = Path(__file__).parents[3] / "examples"
     if (examples / CAPTURE).is_file():
-        return replace(  # type: ignore[type-var]
+        return replace(
             like, path=examples / CAPTURE, mask=examples / MASK, white="auto", bundled=True
         )
-    return replace(like, path=heads()[0].albedo, bundled=True)  # type: ignore[type-var]
+    return replace(like, path=heads()[0].albedo, bundled=True)
 
 
 def _started(address: str, browse: bool) -> None:

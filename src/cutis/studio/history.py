@@ -69,7 +69,7 @@ class History:
         """The state before (-1) or after (1) that of now, which it becomes; that of now at ends."""
         order = "number < ? order by number desc" if by < 0 else "number > ? order by number"
         with self._lock:
-            number = self._number()
+            number = self._number() or 0
             found = self._base.execute(
                 f"select number from states where {order} limit 1", (number,)
             ).fetchone()

@@ -47,7 +47,7 @@ class Level:
         self.mask: NDArray[np.float32] | None = None
         self.trust: NDArray[np.float32] | None = None
         self._file: MapsFile | None = None
-        self._ask: "Levels | None" = None
+        self._ask: Levels | None = None
 
     def knowing(self, file: MapsFile, whole: "Levels") -> None:
         """From now on it is a source of maps."""
@@ -89,13 +89,17 @@ class Level:
         """Slices of rows that cover it."""
         return bands(self.shape)
 
+    def keep(self) -> None:
+        """They are at hand anyway."""
+
     def rows(self, rows: slice, trust: bool = True) -> Estimate:
         """Maps and colours of some rows."""
         return self.part((rows, slice(None)), trust)
 
     def part(self, rect: Rect, trust: bool = False) -> Estimate:
         """Maps and colours of a part; its place is that of its rows where all columns are asked."""
-        assert self.maps is not None and self.mask is not None
+        assert self.maps is not None
+        assert self.mask is not None
         maps, mask = self.maps[rect], np.ascontiguousarray(self.mask[rect])
         place = None
         if mask.shape[1] == self.shape[1]:

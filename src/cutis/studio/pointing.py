@@ -43,8 +43,9 @@ def reading(face: OpenFace, look: Look, row: int, column: int, light: str | None
     if part is not None:
         skin = _with_trust(skin, part)
     edited = skin.changed_by(change.rows(slice(first, last))) if change.told else skin
-    one, was = edited.rows(slice(row - first, row - first + 1)), skin.rows(
-        slice(row - first, row - first + 1)
+    one, was = (
+        edited.rows(slice(row - first, row - first + 1)),
+        skin.rows(slice(row - first, row - first + 1)),
     )
     inside = bool(was.mask[0, column] > 0)
     found["skin"] = inside

@@ -134,8 +134,8 @@ class Tab:
                 "changed": done.changed, "notes": list(done.notes),
             })  # fmt: skip
         elif message.what == "history":
-            found = await asyncio.to_thread(workshop.history.list)
-            await self._tell({"t": "history", "n": message.n, "states": found})
+            states = await asyncio.to_thread(workshop.history.list)
+            await self._tell({"t": "history", "n": message.n, "states": states})
         elif message.what == "files":
             await self._tell({"t": "files", "n": message.n, "files": self._studio.files.list()})
         else:

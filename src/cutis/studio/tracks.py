@@ -9,7 +9,6 @@ from cutis.errors import CutisError
 from cutis.looks import Look
 from cutis.looks.edits import MapEdit
 from cutis.maps import Maps
-from cutis.maps import colours as maps_colours
 from cutis.maps.changes import Tile
 from cutis.optics import NAMES, RARE_NAMES, TYPICAL
 from cutis.studio.drawing import codes

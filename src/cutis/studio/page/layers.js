@@ -63,8 +63,13 @@ export class LayerList extends EventTarget {
 
   /** @param {string | null} id */
   choose(id) {
+    if (this.chosen === id) return;
     this.chosen = id;
-    this.draw();
+    for (const item of /** @type {NodeListOf<HTMLElement>} */ (this.list.querySelectorAll("li"))) {
+      const chosen = item.dataset.id === id;
+      item.classList.toggle("chosen", chosen);
+      item.setAttribute("aria-selected", String(chosen));
+    }
     this.dispatchEvent(new Event("chosen"));
   }
 
@@ -107,7 +112,7 @@ export class LayerList extends EventTarget {
     const label = make("span", { class: "name" }, name);
     const amount = layer.amount ?? 1;
     const item = make("li", {
-      role: "option", tabindex: "0", "aria-selected": id === this.chosen ? "true" : "false",
+      role: "option", tabindex: "0", "data-id": id, "aria-selected": id === this.chosen ? "true" : "false",
       class: `${id === this.chosen ? "chosen" : ""} ${on ? "" : "off"}`,
       onclick: () => this.choose(id),
       ondblclick: () => this.rename(id, label),

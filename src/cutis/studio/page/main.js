@@ -37,7 +37,11 @@ class Studio {
     this.dirty = false;
     this.fine = 0;
     this.moved = 0;
-    this.last = 0;
+    /** When the slider moved that the picture on its way answers, and the one that has come. */
+    this.began = 0;
+    this.painted = 0;
+    /** The revision of the picture that has come. */
+    this.shown = "";
     /** @type {{x: number, y: number} | null} */
     this.point = null;
     this.reading = false;
@@ -118,6 +122,11 @@ class Studio {
     stage.addEventListener("moved", () => {
       this.zoomed.textContent = `${Math.round((100 * stage.scale) / stage.ratio)} %`;
       this.want();
+    });
+    stage.addEventListener("drawn", () => {
+      if (this.shown) document.body.dataset.drawn = this.shown;
+      if (this.painted) performance.measure("slider", { start: this.painted, end: performance.now() });
+      this.painted = 0;
     });
     stage.addEventListener("point", (event) => {
       this.point = /** @type {CustomEvent} */ (event).detail;
@@ -280,11 +289,8 @@ class Studio {
       this.left = (this.left ?? 1) - 1;
       if (this.left < 1) {
         this.asked = 0;
-        if (this.began) {
-          const start = this.began;
-          requestAnimationFrame(() => performance.measure("slider", { start, end: performance.now() }));
-        }
-        if (!picture.coarser && !this.preview) document.body.dataset.drawn = String(picture.revision);
+        this.painted = this.began;
+        if (!picture.coarser && !this.preview) this.shown = String(picture.revision);
         if (this.dirty) this.ask();
         else if (!picture.coarser && !this.stage.pictures.has("original")) this.prefetch();
       }
