@@ -114,7 +114,10 @@ class Studio {
     on("picture", (picture) => this.arrived(picture));
     on("error", ({ text, n }) => {
       this.reading = false;
-      if (n === this.asked) this.asked = 0;
+      if (n === this.asked) {
+        this.asked = 0;
+        if (this.dirty) this.ask();
+      }
       if (this.saving.element.open) this.saving.failed(text);
       else this.said.say(text);
       if (!this.face) this.wait("", null);
@@ -227,7 +230,7 @@ class Studio {
 
   /** @param {{op: Op, what: string}} what */
   async do({ op, what }) {
-    this.preview = op;
+    this.preview = op.op === "tune" || op.op === "set" ? op : null;
     this.coarse = false;
     try {
       await this.link.ask({ t: "do", op, what });
