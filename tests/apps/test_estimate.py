@@ -37,7 +37,7 @@ def test_maps_model_and_report_are_those_of_the_library(estimated):
     assert header["colorspace"] == "lin_rec709"
     found = json.loads((estimated / "face.report.json").read_text("utf-8"))
     said = found.pop("colorspace")
-    assert said == "sRGB (assumed, the file says nothing)"
+    assert said == "sRGB (its sRGB chunk)"
     files, made_from = found.pop("files"), found.pop("made_from")
     assert found == json.loads(json.dumps(report(skin)))
     assert all((estimated / name).is_file() for name in files)

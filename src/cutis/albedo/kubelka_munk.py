@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from cutis.colour import spectrum_to_rgb
 from cutis.errors import CutisError
-from cutis.optics import ALIAGA2022, WAVELENGTHS, Tissue
+from cutis.optics import WAVELENGTHS, Tissue
 from cutis.optics.parameters import BLOOD, EUMELANIN, MELANIN, OXYGENATION, THICKNESS
 from cutis.transport.kubelka_munk import CONVERSIONS, coefficients, half_space, layer, over
 
@@ -28,7 +28,7 @@ class KubelkaMunkSkin:
     for values outside the ranges of `optics.PARAMETERS`, and unknown names.
     """
 
-    tissue: Tissue = ALIAGA2022
+    tissue: Tissue
     conversion: str = "gate1974"
     epidermis: str = "absorbing"
     thickness: float = 200.0

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutis.errors import CutisError
-from cutis.optics import ALIAGA2022, PARAMETERS, WAVELENGTHS, Tissue, from_coordinates
+from cutis.optics import PARAMETERS, WAVELENGTHS, Tissue, from_coordinates
 from cutis.optics.absorbers import LAYERS
 from cutis.transport import walk_absorptions, walk_stacks
 from cutis.transport.monte_carlo import PHOTONS, check_photons
@@ -27,7 +27,7 @@ BATCH_PHOTONS = 20_000_000
 class Walks:
     """How skins are walked through; `tissue` says in which dimension and with which boundary."""
 
-    tissue: Tissue = ALIAGA2022
+    tissue: Tissue
     photons: int = PHOTONS
     seed: int = 0
     incidence: float | str = "lambertian"

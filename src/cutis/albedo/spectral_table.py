@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from cutis.kernels.mixture import WITHOUT, absorption
 from cutis.kernels.splines import along, chebyshev, from_chebyshev
-from cutis.optics import ALIAGA2022, WAVELENGTHS, Parameter, Tissue
+from cutis.optics import WAVELENGTHS, Parameter, Tissue
 from cutis.optics.parameters import THICKNESS
 from cutis.transport import two_layer_albedo
 
@@ -92,9 +92,7 @@ def _ends(known: Parameter, blend: bool) -> tuple[float, float]:
     return (0.0 if blend and low < NEARLY else low), (1.0 if blend and high > 1 - NEARLY else high)
 
 
-def build(
-    tissue: Tissue = ALIAGA2022, progress: Callable[[int, int], None] | None = None
-) -> SpectralTable:
+def build(tissue: Tissue, progress: Callable[[int, int], None] | None = None) -> SpectralTable:
     """Solves transport exactly at every node (212 544 cases, seconds on two cores).
 
     `progress(done, total)` is called after each wavelength.
@@ -143,7 +141,7 @@ def table_file(tissue: Tissue) -> str:
     return f"{tissue.name}{'-rare' if tissue.rare_chromophores else ''}.npz"
 
 
-def spectral_table(tissue: Tissue = ALIAGA2022) -> SpectralTable:
+def spectral_table(tissue: Tissue) -> SpectralTable:
     """The table of `tissue`: the one that ships where there is one, else built now (seconds)."""
     return _spectral_table(tissue)
 

@@ -74,7 +74,7 @@ class Calibration:
         return captured
 
 
-def to_d65(light: LightLike, tissue: Tissue = ALIAGA2022) -> NDArray[np.float64]:
+def to_d65(light: LightLike, tissue: Tissue) -> NDArray[np.float64]:
     """(3, 3) matrix from the RGB of captures under `light` to that under D65, rgb @ C.T.
 
     Of the paper's tissue the conversion that the paper took, of mixes of three bands
@@ -85,15 +85,15 @@ def to_d65(light: LightLike, tissue: Tissue = ALIAGA2022) -> NDArray[np.float64]
 
 def calibrate(
     rgb: ArrayLike,
+    tissue: Tissue,
     white: White = None,
     exposure: Exposure = None,
     light: LightLike = "D65",
-    tissue: Tissue = ALIAGA2022,
 ) -> Calibration:
     """Light and gains for masked texels `rgb` (n, 3) of linear sRGB.
 
-    `light` is that of the capture, on which it is balanced: a name or file that
-    `colour.illuminant` takes.
+    Gains are looked for in the albedo space of `tissue`. `light` is that of the capture, on which
+    it is balanced: a name or file that `colour.illuminant` takes.
     `white` is "none", "auto" or three gains; `exposure` is "none", "auto" or one gain, which
     multiplies those of `white`. `white="auto"` looks for three gains, exposure included;
     `exposure="auto"` alone for one common gain.

@@ -62,9 +62,10 @@ def _tensor(name: str) -> Model:
 
 
 def _kubelka_munk(name: str) -> Model:
+    from cutis.albedo.kubelka_munk import KubelkaMunkSkin
     from cutis.inverse.kubelka_munk import kubelka_munk_inverse
 
-    baseline = kubelka_munk_inverse()
+    baseline = kubelka_munk_inverse(KubelkaMunkSkin(ALIAGA2022))
     digest = content_digest(name, asdict(baseline.skin))
     return Model(name, _in_units(baseline.encode), baseline.decode, ALIAGA2022, digest=digest)
 

@@ -32,7 +32,6 @@ from cutis.errors import CutisError
 from cutis.inverse.expectation import PIVOT, Expectation, expected_of
 from cutis.inverse.fit import logit
 from cutis.optics import (
-    ALIAGA2022,
     NAMES,
     RARE_NAMES,
     WAVELENGTHS,
@@ -91,7 +90,7 @@ class SpectralFitter:
     def __init__(
         self,
         wavelengths: ArrayLike,
-        tissue: Tissue = ALIAGA2022,
+        tissue: Tissue,
         *,
         specular: float = 0.0,
         shift: float = 0.0,
@@ -355,7 +354,7 @@ class SpectralFitter:
 def fit_spectra(
     reflectance: ArrayLike,
     wavelengths: ArrayLike,
-    tissue: Tissue = ALIAGA2022,
+    tissue: Tissue,
     *,
     specular: float = 0.0,
     shift: float = 0.0,

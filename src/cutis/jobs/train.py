@@ -77,7 +77,8 @@ def _bake(recipe: str, folder: Path, progress: Progress) -> list[Path]:
     """Writes the tables of a baked model; returns their names."""
     jobs: dict[str, tuple[Callable[..., Any], Any]]
     if recipe == shipped.EXACT:
-        jobs = {recipe: (exact_inverse(shipped.shipped_encoder()), ALIAGA_CHART)}
+        space = albedo_space(shipped.TISSUE_OF[recipe])
+        jobs = {recipe: (exact_inverse(shipped.shipped_encoder(), space), ALIAGA_CHART)}
     else:
         space, prior = albedo_space(shipped.TISSUE_OF[recipe]), shipped.shipped_prior(recipe)
         jobs = {

@@ -60,7 +60,7 @@ def survey(
         _look(captures, sampler, None, progress, "looking for gains")
         progress(1, 1, "calibrating")
     colours = np.zeros((0, 3), np.float32) if sampler is None else sampler.colours()
-    calibration = calibrate(colours, white, exposure, illuminant, model.tissue)
+    calibration = calibrate(colours, model.tissue, white, exposure, illuminant)
     if model.survey is None:
         return Surveyed(calibration)
     asked = model.survey()

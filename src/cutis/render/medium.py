@@ -22,8 +22,7 @@ from scipy.ndimage import map_coordinates
 
 from cutis.colour.spectra import spectrum_to_rgb
 from cutis.maps import SkinMaps
-from cutis.optics import WAVELENGTHS
-from cutis.optics.tissue import ALIAGA2022, Tissue
+from cutis.optics import WAVELENGTHS, Tissue
 
 MM_PER_CM = 10.0
 """Millimetres in a centimetre: a coefficient in cm⁻¹ is a length of 10 mm over it."""
@@ -34,7 +33,7 @@ SHARE = 0.3
 """Share of eumelanin where no map says it: about the median of measured skins."""
 
 
-def mean_free_path(anisotropy: float = 0.0, tissue: Tissue = ALIAGA2022) -> NDArray[np.float64]:
+def mean_free_path(tissue: Tissue, anisotropy: float = 0.0) -> NDArray[np.float64]:
     """(3,) mean free path in mm of red, green and blue, from the dermis' reduced scattering.
 
     `anisotropy` is the g that the renderer walks with.
@@ -44,10 +43,10 @@ def mean_free_path(anisotropy: float = 0.0, tissue: Tissue = ALIAGA2022) -> NDAr
 
 
 def mean_free_path_in(
+    tissue: Tissue,
     blood: ArrayLike,
     oxygenation: ArrayLike,
     anisotropy: float = 0.0,
-    tissue: Tissue = ALIAGA2022,
     eumelanin: ArrayLike = SHARE,
 ) -> NDArray[np.float64]:
     """(..., 3) the same in mm with the absorption of a dermis of `blood`, `oxygenation` (...).
@@ -59,15 +58,9 @@ def mean_free_path_in(
     return (1 - anisotropy) * _bands(MM_PER_CM / (scattering + absorption))
 
 
-def of_maps(
-    skin: SkinMaps, anisotropy: float = 0.0, tissue: Tissue | None = None
-) -> NDArray[np.float32]:
-    """(H, W, 3) `mean_free_path_in` of every texel, from a table; off the mask `mean_free_path`.
-
-    `tissue` is that of the maps unless given.
-    """
-    tissue = skin.tissue if tissue is None else tissue
-    table = _table(tissue)
+def of_maps(skin: SkinMaps, anisotropy: float = 0.0) -> NDArray[np.float32]:
+    """(H, W, 3) `mean_free_path_in` of every texel, from a table; off the mask `mean_free_path`."""
+    table = _table(skin.tissue)
     place = np.stack([
         np.clip(skin.eumelanin, 0, 1) * (table.shape[1] - 1),
         np.sqrt(np.sqrt(np.clip(skin.blood, 0, 1))) * (BLOOD - 1),
@@ -77,7 +70,7 @@ def of_maps(
     for band in range(3):
         map_coordinates(table[band], place, found[..., band], order=1, mode="nearest")
     found *= np.float32(1 - anisotropy)
-    found[skin.mask <= 0] = mean_free_path(anisotropy, tissue)
+    found[skin.mask <= 0] = mean_free_path(skin.tissue, anisotropy)
     return found
 
 
@@ -96,4 +89,4 @@ def _table(tissue: Tissue) -> NDArray[np.float64]:
         np.linspace(0, 1, OXYGENATION),
         indexing="ij",
     )
-    return np.moveaxis(mean_free_path_in(blood, oxygenation, 0.0, tissue, share), -1, 0)
+    return np.moveaxis(mean_free_path_in(tissue, blood, oxygenation, 0.0, share), -1, 0)
