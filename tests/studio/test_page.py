@@ -1,5 +1,6 @@
 """The studio as people use it: a real browser, a small face, each tool, and the bytes that come."""
 
+import os
 import shutil
 import subprocess
 import sys
@@ -17,10 +18,14 @@ FLAGS = (
 
 @pytest.fixture(scope="module")
 def browser():
-    sync_api = pytest.importorskip(
-        "playwright.sync_api", reason="needs playwright: pip install 'cutis[browser]'"
-    )
+    if os.environ.get("CUTIS_BROWSER") == "required":
+        import playwright.sync_api as sync_api
+    else:
+        sync_api = pytest.importorskip(
+            "playwright.sync_api", reason="needs playwright: pip install 'cutis[browser]'"
+        )
     if CHROMIUM is None:
+        assert os.environ.get("CUTIS_BROWSER") != "required"
         pytest.skip("needs a Chromium on the path")
     with sync_api.sync_playwright() as play:
         chromium = play.chromium.launch(executable_path=CHROMIUM, args=list(FLAGS))
