@@ -24,6 +24,7 @@ ROOMS = (
     "looks",
     "luts",
     "report",
+    "checks",
     "render",
     "jobs",
     "studio",
