@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from cutis.colour import encode_srgb
 from cutis.errors import CutisError
 from cutis.looks import Look
+from cutis.looks.look import LookOnFace
 from cutis.maps import Estimate, Maps
 from cutis.maps import colours as maps_colours
 from cutis.maps.changes import Tile
@@ -104,6 +105,35 @@ class Drawer:
         with self._lock:
             colours = self._draw(level, rect, look, light)
         return Drawn(colours, level.number, rect)
+
+    def cover(self, region: Region, look: Look, number: int, coarser: int = 0) -> Drawn:
+        """How much of a layer, from 0 on, each texel gets: (h, w, 1)."""
+        level, rect = self.place(region, coarser)
+        layer = look.layers[number].model_copy(update={"on": True})
+        alone = look.model_copy(update={"layers": (layer,)})
+        change = self._face.change(alone, level)
+        assert isinstance(change, LookOnFace)
+        wide = _wide(level, rect, change.reach) if placed(alone) else rect
+        skin = level.part(wide, change.trust)
+        (ready,) = change._layers
+        weight = ready.weight(Tile(skin.maps, skin.sigmas, (), skin.confidence))
+        return Drawn(weight[_inner(wide, rect)][..., None], level.number, rect)
+
+    def values(self, region: Region, look: Look, kind: str, name: str, coarser: int = 0) -> Drawn:
+        """A map with the look in it, or σ or confidence of the estimate: (h, w, 1), NaN off skin."""
+        level, rect = self.place(region, coarser)
+        if kind == "map":
+            _, after = self.maps(level, rect, look)
+            found, mask = after[name], after.mask
+        else:
+            skin = level.part(rect, trust=True)
+            mask = skin.maps.mask
+            values = skin.confidence if kind == "confidence" else skin.sigmas.get(name)
+            if values is None:
+                raise CutisError(f"these maps have no {kind} of {name}")
+            found = values
+        seen = np.where(mask > 0, found, np.float32(np.nan))[..., None]
+        return Drawn(seen, level.number, rect)
 
     def maps(self, level: Level, rect: Rect, look: Look) -> tuple[Estimate, Maps]:
         """The estimate of a part, and its maps with the look in them."""

@@ -14,7 +14,9 @@ from cutis.studio.state import AnyOp
 
 LARGEST = 4 << 20
 """Bytes of a message: a long stroke has some thousand points."""
-Show = Annotated[str, Field(pattern=r"^(edited|original|[a-z]{1,20}:[a-z0-9]{1,20})$")]
+Show = Annotated[
+    str, Field(pattern=r"^(edited|original|(map|sigma|confidence|mask):[a-z0-9]{1,20})$")
+]
 Number = Annotated[float, Field(ge=-1e6, le=1e6, allow_inf_nan=False)]
 Label = Annotated[str, Field(max_length=200)]
 

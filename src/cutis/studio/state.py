@@ -90,6 +90,14 @@ class Paint(Op):
     part: Document | None
 
 
+class Brush(Op):
+    """A stroke on top of those of a layer's mask, which gets its first with it."""
+
+    op: Literal["stroke"]
+    id: Id
+    stroke: Document
+
+
 class Whole(Op):
     """Another look in place of all, as from a file."""
 
@@ -98,7 +106,7 @@ class Whole(Op):
 
 
 AnyOp = Annotated[
-    Add | Remove | Duplicate | Move | Put | Tune | Paint | Whole, Field(discriminator="op")
+    Add | Remove | Duplicate | Move | Put | Tune | Paint | Brush | Whole, Field(discriminator="op")
 ]
 
 
@@ -158,7 +166,7 @@ class State:
             at = self.place(op.id)
             layers.insert(at + 1, layers[at])
             ids.insert(at + 1, _new())
-        elif isinstance(op, Put | Tune | Paint):
+        elif isinstance(op, Put | Tune | Paint | Brush):
             at = self.place(op.id)
             layers[at] = _changed(layers[at], op, self)
         document = {**self.look.as_json(), "layers": layers}
@@ -166,7 +174,7 @@ class State:
         return replace(self, look=look, ids=tuple(ids))
 
 
-def _changed(layer: Document, op: Put | Tune | Paint, state: State) -> Document:
+def _changed(layer: Document, op: Put | Tune | Paint | Brush, state: State) -> Document:
     if isinstance(op, Put):
         return {**layer, op.field: op.value}
     if isinstance(op, Paint):
@@ -177,6 +185,14 @@ def _changed(layer: Document, op: Put | Tune | Paint, state: State) -> Document:
             mask[op.at : op.at + 1] = [] if op.part is None else [op.part]
         else:
             raise CutisError("that part of the mask is gone: another window has removed it")
+        return {**layer, "mask": mask}
+    if isinstance(op, Brush):
+        mask = [dict(part) for part in layer.get("mask", ())]
+        painted = [part for part in mask if part.get("part") == "strokes"]
+        if not painted:
+            painted = [{"part": "strokes"}]
+            mask += painted
+        painted[-1]["strokes"] = [*painted[-1].get("strokes", ()), op.stroke]
         return {**layer, "mask": mask}
     edits, made = list(layer.get("edits", ())), state.look.layers[state.place(op.id)].edits
     old = [

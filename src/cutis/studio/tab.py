@@ -17,6 +17,7 @@ from cutis.errors import CutisError
 from cutis.looks import Look
 from cutis.studio import protocol, tracks
 from cutis.studio.drawing import Drawn, Region, codes, jpeg
+from cutis.studio.overlays import map_picture, mask_over
 from cutis.studio.pointing import axes, reading
 from cutis.studio.presets import preset_list
 from cutis.studio.rates import Rate
@@ -250,8 +251,15 @@ def _picture(
         drawn = workshop.drawer.original(region, message.coarser)
     elif show == "edited":
         drawn = workshop.drawer.edited(region, look, message.coarser, message.light)
+    elif show.startswith("mask:"):
+        number = workshop.state.place(show.removeprefix("mask:"))
+        drawn, picture = mask_over(workshop.drawer, region, look, number, message.coarser)
+        return drawn, head, jpeg(picture, QUICK if message.coarser else FINE)
     else:
-        raise CutisError(f"there is no picture {show}")
+        drawn, picture, head = map_picture(
+            workshop.face, workshop.drawer, region, look, show, message.coarser
+        )
+        return drawn, head, jpeg(picture, FINE)
     picture = codes(drawn.colours)
     return drawn, head, jpeg(picture, QUICK if message.coarser else FINE)
 

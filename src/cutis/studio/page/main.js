@@ -5,6 +5,8 @@ import { Adjust } from "./adjust.js";
 import { keysDialog, OpenDialog, Said, SaveDialog } from "./dialogs.js";
 import { clear, iconButton, make } from "./dom.js";
 import { LayerList } from "./layers.js";
+import { Masks } from "./masks.js";
+import { Shelf } from "./shelf.js";
 import { Link } from "./link.js";
 import { ReadingCard } from "./reading.js";
 import { Stage } from "./stage.js";
@@ -22,7 +24,11 @@ class Studio {
     this.stage = new Stage();
     this.layers = new LayerList();
     this.adjust = new Adjust();
+    this.masks = new Masks();
+    this.shelf = new Shelf();
     this.card = new ReadingCard();
+    /** @type {[number, number][]} points of a stroke in the making */
+    this.points = [];
     this.opening = new OpenDialog();
     this.saving = new SaveDialog();
     this.keys = keysDialog();
@@ -45,16 +51,8 @@ class Studio {
     /** @type {{x: number, y: number} | null} */
     this.point = null;
     this.reading = false;
-    this.build();
-    this.stage.covered = () => {
-      const box = this.card.element.getBoundingClientRect();
-      return box.width ? box.width + 24 : 0;
-    };
-    this.listen();
-    this.link.connect();
-  }
-
-  build() {
+    /** @type {Record<string, HTMLButtonElement>} */
+    this.turns = {};
     this.name = make("button", { type: "button", class: "file", title: WORDS.open, onclick: () => this.askFiles() }, "…");
     this.modes = /** @type {Record<string, HTMLButtonElement>} */ ({});
     const views = make("div", { class: "segments", role: "group", "aria-label": WORDS.views });
@@ -69,21 +67,120 @@ class Studio {
     const help = make("button", { type: "button", class: "quiet", title: WORDS.keys, "aria-label": WORDS.keys, onclick: () => this.keys.showModal() }, "?");
     const bar = make("header", { class: "bar" },
       make("div", { class: "side" }, this.name),
-      views,
+      make("div", { class: "middle" }, views, this.kind = this.kinds()),
       make("div", { class: "side end" }, this.zoomed, this.undo, this.redo, help, this.save));
     this.bars = make("div", { class: "progress", hidden: true, role: "progressbar", "aria-label": WORDS.estimating, "aria-valuemin": "0", "aria-valuemax": "100" }, make("i"));
     this.status = make("span", { class: "doing" });
     this.facts = make("footer", { class: "facts" });
-    this.panel = make("aside", { class: "panel", "aria-label": WORDS.adjust }, this.layers.element, this.adjust.element);
-    const work = make("main", { class: "work" }, this.stage.element, this.card.element, this.said.element,
+    this.panel = make("aside", { class: "panel", "aria-label": WORDS.adjust }, this.tabs(), this.editing = make("div", {}, this.layers.element, this.adjust.element, this.masks.element), this.shelf.presets, this.shelf.history);
+    this.turn("edit");
+    this.bar = make("figure", { class: "bar-of-map", hidden: true });
+    const work = make("main", { class: "work" }, this.stage.element, this.card.element, this.bar, this.said.element,
       make("div", { class: "waiting", hidden: true }, this.bars, this.status));
     this.waiting = /** @type {HTMLElement} */ (work.querySelector(".waiting"));
     document.body.append(bar, work, this.panel, this.facts, this.opening.element, this.saving.element, this.keys);
     this.setMode("edited");
+    this.stage.covered = () => {
+      const box = this.card.element.getBoundingClientRect();
+      return box.width ? box.width + 24 : 0;
+    };
+    this.listen();
+    this.link.connect();
+  }
+
+  /** Which of the panels is shown. */
+  tabs() {
+    const list = make("div", { class: "tabs", role: "group" });
+    for (const [name, said] of Object.entries(WORDS.tabs)) {
+      this.turns[name] = make("button", { type: "button", "aria-pressed": "false", onclick: () => this.turn(name) }, said);
+      list.append(this.turns[name]);
+    }
+    return list;
+  }
+
+  /** @param {string} name */
+  turn(name) {
+    for (const [one, button] of Object.entries(this.turns)) button.setAttribute("aria-pressed", String(one === name));
+    if (this.editing) this.editing.hidden = name !== "edit";
+    this.shelf.presets.hidden = name !== "presets";
+    this.shelf.history.hidden = name !== "history";
+    if (name === "presets" && !this.shelf.urls.length) this.link.send({ t: "ask", what: "presets" });
+    this.turned = name;
+    if (name === "history") this.link.send({ t: "ask", what: "history" });
+  }
+
+  /** What is drawn: the picture, a map, its σ. */
+  kinds() {
+    const maps = /** @type {Record<string, string>} */ (WORDS.maps);
+    const five = ["melanin", "blood", "thickness", "eumelanin", "oxygenation"];
+    const select = make("select", { class: "kind", "aria-label": WORDS.whatIsDrawn, title: WORDS.whatIsDrawn },
+      make("option", { value: "" }, WORDS.picture_),
+      ...five.map((name) => make("option", { value: `map:${name}` }, maps[name])),
+      ...five.map((name) => make("option", { value: `sigma:${name}` }, `${WORDS.sigmaOf} ${maps[name].toLowerCase()}`)),
+      make("option", { value: "confidence:all" }, WORDS.confidence));
+    select.addEventListener("change", () => { this.overlay(); select.blur(); });
+    return select;
+  }
+
+  /** What lies over the edited face: a map, the mask of the chosen layer, or nothing. */
+  overlay() {
+    const mask = this.masks.showing && this.layers.chosen ? `mask:${this.layers.chosen}` : "";
+    this.stage.overlay = this.kind?.value || mask;
+    this.bar.hidden = !this.kind?.value;
+    this.stage.redraw();
+    this.want();
+  }
+
+  /** The scale of a map. @param {{unit: string, ticks: [string, number][], colours: string[]}} bar */
+  scale(bar) {
+    clear(this.bar);
+    const strip = make("div", { class: "strip" });
+    strip.style.setProperty("background", `linear-gradient(90deg, ${bar.colours.join(", ")})`);
+    const ticks = bar.ticks.map(([text, place]) => {
+      const tick = make("span", {}, text);
+      tick.style.setProperty("left", `${100 * place}%`);
+      return tick;
+    });
+    this.bar.append(make("figcaption", {}, `${this.kind?.selectedOptions[0]?.textContent ?? ""} ${bar.unit}`), strip, make("div", { class: "ticks" }, ...ticks));
+  }
+
+  /** A stroke of the brush begins, goes on or ends. @param {PointerEvent} event */
+  paint(event) {
+    const { stage, masks } = this;
+    const [px, py] = stage.inside(event.clientX, event.clientY);
+    const { width, height } = stage.size;
+    const round = (/** @type {number} */ v) => Math.min(Math.max(Math.round(v * 1e5) / 1e5, -1), 2);
+    /** @type {[number, number]} */
+    const point = [round((px - stage.x) / stage.scale / width), round((py - stage.y) / stage.scale / height)];
+    const last = this.points[this.points.length - 1];
+    const far = last ? Math.hypot((point[0] - last[0]) * width, (point[1] - last[1]) * height) : Infinity;
+    if (far >= Math.min(0.15 * masks.radius * Math.max(width, height), 4 / stage.scale) || event.type === "pointerdown") this.points.push(point);
+    if (event.type === "pointerup" || event.type === "pointercancel") {
+      const op = masks.stroke(this.points);
+      this.points = [];
+      this.do({ op, what: WORDS[masks.tool === "eraser" ? "eraser" : "brush"] });
+      return;
+    }
+    this.preview = masks.stroke(this.points);
+    this.coarse = true;
+    this.want();
   }
 
   listen() {
-    const { link, stage, layers, adjust } = this;
+    const { link, stage, layers, adjust, masks, shelf } = this;
+    masks.addEventListener("op", (event) => {
+      const { op, what, done } = /** @type {CustomEvent} */ (event).detail;
+      if (done) this.do({ op, what });
+      else { this.preview = op; this.coarse = true; this.want(); }
+    });
+    masks.addEventListener("showing", () => this.overlay());
+    masks.addEventListener("tool", () => {
+      stage.brush = masks.tool ? (event) => this.paint(event) : null;
+      stage.radius = () => masks.radius * Math.max(stage.size.width, stage.size.height);
+      stage.redraw();
+    });
+    shelf.addEventListener("preset", (event) => this.do(/** @type {CustomEvent} */ (event).detail));
+    shelf.addEventListener("go", (event) => link.send({ t: "go", number: /** @type {CustomEvent} */ (event).detail }));
     const on = (/** @type {string} */ name, /** @type {(detail: any) => void} */ act) => {
       link.addEventListener(name, (event) => act(/** @type {CustomEvent} */ (event).detail));
     };
@@ -109,6 +206,8 @@ class Studio {
       this.card.show(reading);
       if (this.point && (this.point.x !== reading.at[0] || this.point.y !== reading.at[1])) this.read();
     });
+    on("preset", (preset) => shelf.add(preset));
+    on("history", ({ states }) => shelf.list(states, this.number ?? 0));
     on("files", ({ files }) => this.opening.show(files, this.file));
     on("saved", (done) => this.saving.done(done));
     on("picture", (picture) => this.arrived(picture));
@@ -137,7 +236,11 @@ class Studio {
     });
     layers.addEventListener("op", (event) => this.do(/** @type {CustomEvent} */ (event).detail));
     layers.addEventListener("chosen", () => {
-      if (!this.preview) adjust.show(layers.chosen, layers.layer());
+      if (!this.preview) {
+        adjust.show(layers.chosen, layers.layer());
+        masks.show(layers.chosen, layers.layer());
+      }
+      this.overlay();
       this.askTracks();
     });
     adjust.addEventListener("tracks", () => this.askTracks());
@@ -190,6 +293,7 @@ class Studio {
       make("span", { class: "right" }, this.took = make("span"), ` ${WORDS.drawnHere}`));
     this.adjust.prepare(this.parameters ?? [], face.spans);
     this.adjust.id = null;
+    this.shelf.forget();
     this.panel.inert = !face.ready;
     this.save.disabled = !face.ready;
     if (!again) this.stage.show(face.width, face.height);
@@ -224,13 +328,16 @@ class Studio {
     this.undo.disabled = !state.undo;
     this.redo.disabled = !state.redo;
     document.body.dataset.revision = String(state.revision);
+    this.number = state.number;
     this.layers.show(state);
+    if (this.turned === "history") this.link.send({ t: "ask", what: "history" });
     this.want();
   }
 
   /** @param {{op: Op, what: string}} what */
   async do({ op, what }) {
     this.preview = op.op === "tune" || op.op === "set" ? op : null;
+    if (op.op === "stroke") this.dirty = false;
     this.coarse = false;
     try {
       await this.link.ask({ t: "do", op, what });
@@ -239,6 +346,7 @@ class Studio {
     }
     if (this.preview === op) this.preview = null;
     this.adjust.show(this.layers.chosen, this.layers.layer());
+    this.masks.show(this.layers.chosen, this.layers.layer());
     this.want();
   }
 
@@ -287,6 +395,7 @@ class Studio {
   async arrived(picture) {
     const bitmap = await createImageBitmap(new Blob([picture.body], { type: "image/jpeg" }));
     this.stage.put(picture.show, bitmap, picture.place);
+    if (picture.bar) this.scale(picture.bar);
     if (this.took) this.took.textContent = `${Math.round(picture.took)} ms`;
     if (picture.n === this.asked) {
       this.left = (this.left ?? 1) - 1;
@@ -348,6 +457,8 @@ class Studio {
       e: () => this.setMode("edited"), o: () => this.setMode("original"), s: () => this.setMode("split"),
       "\\": () => this.compare(true), 0: () => this.stage.fit(), 1: () => this.stage.zoom(this.stage.ratio),
       "+": () => this.stage.step(1), "=": () => this.stage.step(1), "-": () => this.stage.step(-1),
+      b: () => this.masks.take("brush"), x: () => this.masks.take("eraser"), m: () => this.masks.toggle(),
+      Escape: () => { if (this.masks.tool) this.masks.take(this.masks.tool); },
       n: () => this.layers.add(), h: () => this.layers.toggle(), Delete: () => this.layers.remove(),
       "[": () => this.layers.step(-1), "]": () => this.layers.step(1), "?": () => this.keys.showModal(),
       i: () => {

@@ -26,10 +26,19 @@ export class Stage extends EventTarget {
     /** @type {"edited" | "original" | "split"} */
     this.mode = "edited";
     this.comparing = false;
+    /** A picture in place of the edited one: a map, or a mask over it. */
+    this.overlay = "";
+    /** Gets the pointer in place of panning. @type {((event: PointerEvent) => void) | null} */
+    this.brush = null;
+    /** Radius of the brush in texels. */
+    this.radius = () => 0;
+    /** @type {[number, number] | null} */
+    this.cursor = null;
     this.share = 0.5;
     /** @type {Map<string, Held>} */
     this.pictures = new Map();
     this.frame = 0;
+    this.painting = -1;
     /** Pixels of the page at the left that something covers. */
     this.covered = () => 0;
     /** @type {Map<number, {x: number, y: number}>} */
@@ -116,7 +125,8 @@ export class Stage extends EventTarget {
   /** The pictures that have to be there. @returns {string[]} */
   wanted() {
     if (this.comparing || this.mode === "original") return ["original"];
-    return this.mode === "split" ? ["edited", "original"] : ["edited"];
+    const edited = this.overlay || "edited";
+    return this.mode === "split" ? [edited, "original"] : [edited];
   }
 
   /** A picture has come. @param {string} name @param {ImageBitmap} bitmap @param {[number, number, number, number]} place */
@@ -140,18 +150,27 @@ export class Stage extends EventTarget {
     const at = Math.round(this.share * canvas.width);
     if (split) {
       this.paint("original", 0, at);
-      this.paint("edited", at, canvas.width - at);
+      this.paint(wanted[0], at, canvas.width - at);
     } else {
-      this.paint(this.pictures.has(wanted[0]) ? wanted[0] : "original", 0, canvas.width);
+      this.paint(wanted[0], 0, canvas.width);
     }
     this.handle.hidden = !split;
     if (split) this.handle.style.setProperty("left", `${(100 * at) / canvas.width}%`);
+    if (this.brush && this.cursor) {
+      context.lineWidth = this.ratio;
+      for (const [colour, more] of /** @type {[string, number][]} */ ([["#000a", 1], ["#fff", 0]])) {
+        context.strokeStyle = colour;
+        context.beginPath();
+        context.arc(this.cursor[0], this.cursor[1], this.radius() * this.scale + more * this.ratio, 0, 7);
+        context.stroke();
+      }
+    }
     this.dispatchEvent(new Event("drawn"));
   }
 
   /** @param {string} name @param {number} left @param {number} width */
   paint(name, left, width) {
-    const held = this.pictures.get(name) ?? this.pictures.get("original") ?? this.pictures.get("edited");
+    const held = this.pictures.get(name) ?? this.pictures.get("edited") ?? this.pictures.get("original") ?? this.pictures.get("edited");
     if (!held || width <= 0) return;
     const { context } = this;
     const [l, t, r, b] = held.place;
@@ -196,11 +215,20 @@ export class Stage extends EventTarget {
       canvas.setPointerCapture(event.pointerId);
       this.fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
       canvas.classList.add("held");
+      if (this.brush && event.button === 0 && this.fingers.size === 1) {
+        this.painting = event.pointerId;
+        this.brush(event);
+      }
     });
     canvas.addEventListener("pointermove", (event) => this.drag(event));
     for (const name of ["pointerup", "pointercancel"]) {
       canvas.addEventListener(name, (event) => {
-        this.fingers.delete(/** @type {PointerEvent} */ (event).pointerId);
+        const pointer = /** @type {PointerEvent} */ (event);
+        this.fingers.delete(pointer.pointerId);
+        if (this.painting === pointer.pointerId) {
+          this.painting = -1;
+          this.brush?.(pointer);
+        }
         canvas.classList.remove("held");
       });
     }
@@ -227,6 +255,13 @@ export class Stage extends EventTarget {
   /** @param {PointerEvent} event */
   drag(event) {
     const last = this.fingers.get(event.pointerId);
+    this.cursor = this.inside(event.clientX, event.clientY);
+    if (this.brush) this.redraw();
+    if (this.painting === event.pointerId) {
+      const all = event.getCoalescedEvents?.() ?? [];
+      for (const one of all.length ? all : [event]) this.brush?.(one);
+      return;
+    }
     if (!last) {
       this.dispatchEvent(new CustomEvent("point", { detail: this.texel(event.clientX, event.clientY) }));
       return;
