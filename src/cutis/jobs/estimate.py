@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
+from cutis.arrays import Map
 from cutis.checks import examine, gather
 from cutis.colour import LINEAR, Light, Space, light
 from cutis.errors import CutisError
@@ -22,6 +23,7 @@ from cutis.jobs.files import made_folder
 from cutis.jobs.job import Told, digest_of, tell, told
 from cutis.jobs.outcome import Asked, CaptureFiles, Estimated
 from cutis.jobs.results import FILES, MADE_FROM, Found, alone, look, made_from
+from cutis.kernels.behind import Behind
 from cutis.maps import FileCapture, Header, Surveyed, estimate_bands, load_model, survey
 from cutis.maps.estimating import Progress, nobody
 from cutis.maps.skin_maps import Estimate
@@ -257,7 +259,9 @@ class _Run:
             )
         )
         self._open_maps: Callable[[Estimate], Any] = lambda first: stack.enter_context(
-            maps_writer(f"{stem}.skin.exr", self._header(first), opened.shape, kind)
+            maps_writer(
+                f"{stem}.skin.exr", self._header(first), opened.shape, kind, self.report.statistics
+            )
         )
 
     def _header(self, first: Estimate) -> Header:
@@ -269,20 +273,23 @@ class _Run:
         )  # fmt: skip
 
     def through(self, regions: Regions | None, progress: Progress) -> None:
-        """Estimates all rows."""
+        """Estimates all rows; what is ready is written meanwhile."""
         height, width = self._opened.shape
         bands = estimate_bands(self._opened, self._job.model, self._known, sigma=self._sigma)
-        for rows, skin in bands:
-            if self._put_maps is None:
-                self._put_maps = self._open_maps(skin)
-            self._put_maps(skin)
-            albedo = self._space.from_linear_srgb(skin.model_albedo)
-            self._put_model({name: albedo[..., i] for i, name in enumerate("RGB")})
-            self.report.add(skin)
-            self.previews.add(skin)
-            if regions is not None:
-                regions.add(skin, rows)
-            progress(min(rows.stop, height) * width, height * width, "estimating")
+        with Behind() as behind:
+            for rows, skin in bands:
+                if self._put_maps is None:
+                    self._put_maps = self._open_maps(skin)
+                behind.call(self._put, skin, self._space.from_linear_srgb(skin.model_albedo))
+                self.report.add(skin)
+                self.previews.add(skin)
+                if regions is not None:
+                    regions.add(skin, rows)
+                progress(min(rows.stop, height) * width, height * width, "estimating")
+
+    def _put(self, skin: Estimate, albedo: Map) -> None:
+        self._put_maps(skin)
+        self._put_model({name: albedo[..., i] for i, name in enumerate("RGB")})
 
 
 def _file(path: Path | None) -> Told:
