@@ -98,6 +98,21 @@ class Turn(StrEnum):
     IGNORE = "ignore"
 
 
+class Switch(StrEnum):
+    """On or off."""
+
+    ON = "on"
+    OFF = "off"
+
+
+Steadiness = Annotated[
+    Switch,
+    typer.Option(
+        "--steady",
+        help="on smooths thickness, melanin type and oxygenation as far as colours allow; off "
+        "finds every texel by itself.",
+    ),
+]
 Turning = Annotated[
     Turn,
     typer.Option(

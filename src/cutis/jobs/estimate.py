@@ -55,7 +55,8 @@ class EstimateJob:
     `output_colorspace` is that of NAME.model.exr, None for linear sRGB. `half` stores maps in half
     the size, `sigma` adds standard deviations and confidence where the model knows them, `page`
     adds NAME.report.html. `orientation` "ignore" keeps pictures in the order they are stored in,
-    whatever their tag says. `again` makes anew what is there, also what was made otherwise.
+    whatever their tag says. Without `steady` every texel is found by itself. `again` makes anew
+    what is there, also what was made otherwise.
     """
 
     captures: tuple[CaptureFiles, ...]
@@ -70,6 +71,7 @@ class EstimateJob:
     sigma: bool = True
     page: bool = False
     orientation: Orientation = "auto"
+    steady: bool = True
     again: bool = field(default=False, metadata={"result": False})
 
     def __post_init__(self) -> None:
@@ -96,6 +98,11 @@ class EstimateJob:
         return replace(self, captures=files, output=Path(os.path.abspath(self.output)))
 
     # the steps, which runners put together ----------------------------------------------------
+
+    @property
+    def used(self) -> Model:
+        """The model as it is used: with neighbours or without."""
+        return self.model if self.steady else self.model.alone
 
     def stem(self, capture: CaptureFiles) -> Path:
         """Results are called this and what they are: STEM.skin.exr."""
@@ -139,7 +146,7 @@ class EstimateJob:
 
     def _surveyed(self, captures: tuple[CaptureFiles, ...], progress: Progress) -> Surveyed:
         opened = [lambda one=one: self._opened(one) for one in captures]
-        return survey(opened, self.model, self.white, self.exposure, self.light, progress)
+        return survey(opened, self.used, self.white, self.exposure, self.light, progress)
 
     def _readable(self, capture: CaptureFiles) -> bool:
         try:
@@ -275,7 +282,7 @@ class _Run:
     def through(self, regions: Regions | None, progress: Progress) -> None:
         """Estimates all rows; what is ready is written meanwhile."""
         height, width = self._opened.shape
-        bands = estimate_bands(self._opened, self._job.model, self._known, sigma=self._sigma)
+        bands = estimate_bands(self._opened, self._job.used, self._known, sigma=self._sigma)
         with Behind() as behind:
             for rows, skin in bands:
                 if self._put_maps is None:

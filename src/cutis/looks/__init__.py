@@ -15,19 +15,23 @@ from cutis.looks.layer import Layer
 from cutis.looks.look import Look, asked, nothing
 from cutis.looks.masks import MaskPart
 from cutis.looks.pictures import PicturePart, RegionsPart
+from cutis.looks.procedural import BlotchesPart, FrecklesPart, PatchesPart
 from cutis.looks.ranges import RangePart
 from cutis.looks.strokes import Stroke, StrokesPart
 
 __all__ = [
     "Blend",
+    "BlotchesPart",
     "Ceiling",
     "Contrast",
     "Floor",
+    "FrecklesPart",
     "Layer",
     "Look",
     "MaskPart",
     "Multiply",
     "Offset",
+    "PatchesPart",
     "PicturePart",
     "RangePart",
     "RegionsPart",
