@@ -167,7 +167,7 @@ class Model:
         they are inside: whoever cuts tiles gives so many more rows and leaves them out afterwards.
         """
         inside = cover > 0
-        chosen = colours[inside]
+        chosen = texels(colours, inside)
         if self.of_tile is None:
             found = Found(dict(zip(NAMES, spread(self.encode(chosen), inside), strict=True)))
         else:
@@ -187,6 +187,11 @@ def content_digest(*parts: object) -> str:
         total.update(len(data).to_bytes(8, "little"))
         total.update(data)
     return total.hexdigest()
+
+
+def texels(values: Map, inside: NDArray[np.bool_]) -> Map:
+    """(h, W, c) → (n, c) of the texels inside; no copy where that is all."""
+    return values.reshape(-1, values.shape[-1]) if inside.all() else values[inside]
 
 
 def spread(values: Map, inside: NDArray[np.bool_]) -> Map:
