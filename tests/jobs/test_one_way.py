@@ -35,7 +35,7 @@ ESTIMATE = {
     "sigma": ({"sigma": False}, ("--no-sigma",)),
     "page": ({"page": True}, ("--report",)),
     "orientation": ({"orientation": "ignore"}, ("--orientation", "ignore")),
-    "steady": ({"steady": False}, ("--steady", "off")),
+    "steady": ({"steady": True}, ("--steady", "on")),
     "again": ({"again": True}, ("--again",)),
 }
 EDIT = {
