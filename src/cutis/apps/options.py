@@ -109,8 +109,8 @@ Steadiness = Annotated[
     Switch,
     typer.Option(
         "--steady",
-        help="on smooths thickness, melanin type and oxygenation as far as colours allow; off "
-        "finds every texel by itself.",
+        help="on smooths melanin type and oxygenation as far as colours allow, at the cost of "
+        "thickness; off finds every texel by itself.",
     ),
 ]
 Turning = Annotated[
