@@ -16,6 +16,8 @@ from cutis.looks.look import Look, asked, nothing
 from cutis.looks.masks import MaskPart
 from cutis.looks.pictures import PicturePart, RegionsPart
 from cutis.looks.ranges import RangePart
+from cutis.looks.tone import Like, Tone, tone_of
+from cutis.looks.tone_like import tone_look
 
 __all__ = [
     "Blend",
@@ -23,6 +25,7 @@ __all__ = [
     "Contrast",
     "Floor",
     "Layer",
+    "Like",
     "Look",
     "MaskPart",
     "Multiply",
@@ -32,7 +35,10 @@ __all__ = [
     "RegionsPart",
     "Set",
     "Soften",
+    "Tone",
     "asked",
     "nothing",
     "presets",
+    "tone_look",
+    "tone_of",
 ]

@@ -8,7 +8,8 @@ from pydantic import Field
 
 from cutis.errors import CutisError
 from cutis.looks.document import Part, Share
-from cutis.looks.edits import AnyEdit, Effect
+from cutis.looks.edits import AnyEdit
+from cutis.looks.effect import Effect
 from cutis.looks.folder import Folder
 from cutis.looks.masks import Mask, MaskPart, PaintedPart
 from cutis.looks.pictures import GivenPart, PicturePart, RegionsPart
