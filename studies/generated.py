@@ -59,6 +59,7 @@ MAKERS = {
     "studies.illuminant_accuracy": ["docs/colour.md#*"],
     "studies.kubelka_munk_accuracy": ["docs/models.md#kubelka*"],
     "studies.light_alternatives": ["docs/decisions/0009-illuminants.md#*"],
+    "studies.look_schema": ["docs/look.schema.json"],
     "studies.lut_accuracy": ["docs/lut.md#*"],
     "studies.model_accuracy": [
         "docs/models.md#recovery", "docs/models.md#smooth", "docs/models.md#loop",

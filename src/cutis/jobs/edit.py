@@ -115,7 +115,7 @@ class EditJob:
             texture = stack.enter_context(open_source(maps.provenance, path))
             if texture.shape != maps.shape:
                 raise CutisError(f"{path}: the texture is {texture.shape}, the maps {maps.shape}")
-            changes = bound([wanted], Face(maps, memo=memo))
+            changes = bound([wanted], Face(maps, memo=memo, progress=progress))
             model = self.model or maps.made_by.load()
             done = self._albedo(stack, maps, texture, changes, model, progress)
             said = tuple(note for change in changes for note in change.notes)

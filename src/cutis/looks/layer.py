@@ -13,13 +13,15 @@ from cutis.looks.effect import Effect
 from cutis.looks.folder import Folder
 from cutis.looks.masks import Mask, MaskPart, PaintedPart
 from cutis.looks.pictures import GivenPart, PicturePart, RegionsPart
-from cutis.looks.procedural import PatchesPart
+from cutis.looks.procedural import BlotchesPart, FrecklesPart, PatchesPart
 from cutis.looks.ranges import RangePart
+from cutis.looks.strokes import StrokesPart
 from cutis.maps import Face, Tile
 from cutis.maps.plain import Map
 
 AnyMask = Annotated[
-    PicturePart | RegionsPart | RangePart | PatchesPart, Field(discriminator="part")
+    PicturePart | RegionsPart | RangePart | StrokesPart | PatchesPart | BlotchesPart | FrecklesPart,
+    Field(discriminator="part"),
 ]
 """Every kind of part that a mask may have. Another kind is one more class here."""
 Text = Annotated[str, Field(max_length=10_000)]

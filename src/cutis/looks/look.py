@@ -219,6 +219,22 @@ class Look(Part, Recipe):
         """What it does, a line for each edit of layers that are on."""
         return tuple(line for layer in self._own_layers() if layer.on for line in layer.words())
 
+    def as_flags(self) -> tuple[str, ...]:
+        """Arguments of `cutis edit` that do the same; CutisError where flags cannot say it."""
+        from cutis.looks.flags import as_flags
+
+        return as_flags(self)
+
+    @classmethod
+    def published(cls) -> dict[str, Any]:
+        """The JSON Schema of documents, which `docs/look.schema.json` holds."""
+        found = cls.model_json_schema()
+        found["properties"]["$schema"] = {"type": "string"}
+        for part in (found, *found["$defs"].values()):
+            says = [name for name, one in part["properties"].items() if "const" in one]
+            part["required"] = [*says, *part.get("required", ())]
+        return {"$schema": "https://json-schema.org/draft/2020-12/schema", **found}
+
     # on a face ---------------------------------------------------------------------------------
 
     def for_face(self, face: Face) -> "LookOnFace":

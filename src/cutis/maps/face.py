@@ -70,7 +70,12 @@ class Source(Protocol):
     def rows(self, rows: slice, trust: bool = True) -> "SkinMaps":
         """Maps of some rows, with their capture where that is at hand."""
 
+    def keep(self) -> None:
+        """Says that rows will be asked for again."""
 
+
+See = Callable[[slice, "SkinMaps"], None]
+"""Takes rows, and their maps."""
 Memo = dict[tuple[Any, ...], tuple[Any, Any]]
 """What was found of a face with something done to it: what that is of, so that its identity does
 not come again, and the finding."""
@@ -90,11 +95,14 @@ class Face:
         done: Sequence[Recipe] = (),
         changes: Sequence[Change] | None = None,
         memo: Memo | None = None,
+        progress: Callable[[int, int, str], None] = lambda done, total, doing: None,
     ) -> None:
         """`changes` is what `done` are on this face, if somebody has made them already."""
         self._source, self._done = source, tuple(done)
         self._given = None if changes is None else tuple(changes)
         self._memo: Memo = {} if memo is None else memo
+        self._asked: list[tuple[int, bool, See]] = []
+        self._progress = progress
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -133,16 +141,38 @@ class Face:
     def before(self, count: int = 0) -> "Face":
         """The same after the first `count` of the recipes only."""
         given = None if self._given is None else self._given[:count]
-        return Face(self._source, self._done[:count], given, self._memo)
+        return Face(self._source, self._done[:count], given, self._memo, self._progress)
 
     def after(self, recipe: Recipe, change: Change) -> "Face":
         """The same with one more recipe applied, which is `change` here."""
-        return Face(self._source, (*self._done, recipe), (*self.changes, change), self._memo)
+        done, changes = (*self._done, recipe), (*self.changes, change)
+        return Face(self._source, done, changes, self._memo, self._progress)
 
     def bands(self, trust: bool = False) -> Iterator[tuple[slice, "SkinMaps"]]:
         """All rows of this tile as they stand, from top to bottom."""
         for rows in self._source.bands():
             yield rows, edited(self._source, rows, self.changes, trust)
+
+    def ask(self, see: See, level: int = 1, trust: bool = False) -> None:
+        """Has `see` shown all rows of this tile as they stand, before `settle` is over.
+
+        Those of one level are shown a row together, and may need what lower levels have seen.
+        `trust`: σ and confidence must be there.
+        """
+        self._asked.append((level, trust, see))
+
+    def settle(self) -> None:
+        """Shows all rows to whom they are still to be shown."""
+        while self._asked:
+            level = min(level for level, _, _ in self._asked)
+            now = [one for one in self._asked if one[0] == level]
+            self._asked = [one for one in self._asked if one[0] != level]
+            self._source.keep()
+            height, width = self.shape
+            for rows, skin in self.bands(any(trust for _, trust, _ in now)):
+                for _, _, see in now:
+                    see(rows, skin)
+                self._progress(min(rows.stop, height) * width, height * width, "looking at it all")
 
     @contextlib.contextmanager
     def opened(self, number: int) -> Iterator["Face"]:
@@ -157,7 +187,7 @@ class Face:
                 "since looks take medians over all tiles"
             )
         with read(path) as file:
-            yield Face(file, self._done, memo=self._memo)
+            yield Face(file, self._done, None, self._memo, self._progress)
 
     @property
     def tiles(self) -> tuple[int, ...]:
@@ -275,3 +305,6 @@ class Held:
     def rows(self, rows: slice, trust: bool = True) -> "SkinMaps":
         """Maps of some rows."""
         return self._skin.rows(rows)
+
+    def keep(self) -> None:
+        """They are here anyway."""

@@ -25,6 +25,8 @@ from cutis.textures.channels import ChannelFile
 from cutis.textures.closing import Closing
 from cutis.textures.udim import tile_of, udim_pattern
 
+KEPT = 1 << 28
+"""Bytes of maps that are kept, where they will be asked for again."""
 LARGEST = 1e3
 """Of gains, and of the numbers that turn the RGB of one light into that of another."""
 
@@ -46,6 +48,7 @@ class MapsFile(Closing):
                 "make one from a texture with: cutis estimate"
             )
         self._file = ChannelFile(path, shown)
+        self._keeping, self._kept = False, dict[str, Map]()
         try:
             self._check_channels()
             self.shape, self.frame = self._file.shape, self._file.frame
@@ -123,7 +126,7 @@ class MapsFile(Closing):
 
     def rows(self, rows: slice, trust: bool = True) -> Estimate | EditedEstimate:
         """Maps of some rows, without their capture; σ and confidence only if `trust`."""
-        header, channels = self.header, self._file.rows(rows)
+        header, channels = self.header, self._channels(rows, trust)
         mask = channels.get("mask", np.ones(channels["melanin"].shape, dtype=np.float32))
         if not (mask.min(initial=0) >= 0 and mask.max(initial=0) <= 1):  # NaN fails too
             raise self.no_mask()
@@ -156,6 +159,30 @@ class MapsFile(Closing):
             Estimate(now.with_values(before), **rest), (), Tile(now, spread, header.clamped, sure),
             header.edits, kept=header.looks,
         )  # fmt: skip
+
+    def keep(self) -> None:
+        """Says that rows will be asked for again: they are kept, if KEPT bytes are enough."""
+        self._keeping = True
+
+    def _channels(self, rows: slice, trust: bool) -> dict[str, Map]:
+        header = self.header
+        wanted = {*NAMES, *header.rare, "mask", *(ORIGINAL + name for name in header.changed)}
+        if trust:
+            wanted |= {CONFIDENCE, *(name + SIGMA for name in header.sigmas)}
+        wanted &= set(self._file.names)
+        height, width = self.shape
+        if not self._keeping or 4 * len(wanted) * height * width > KEPT:
+            return self._file.rows(rows, wanted)
+        if not wanted <= set(self._kept):
+            self._kept = {name: np.empty(self.shape, np.float32) for name in wanted}
+            self._read = np.zeros(height, dtype=bool)
+        missing = np.flatnonzero(~self._read[rows]) + rows.indices(height)[0]
+        if len(missing):
+            new = slice(int(missing[0]), int(missing[-1]) + 1)
+            for name, values in self._file.rows(new, set(self._kept)).items():
+                self._kept[name][new] = values
+            self._read[new] = True
+        return {name: self._kept[name][rows] for name in wanted}
 
     def edited(self, rows: slice, changes: Sequence[Change], trust: bool = True) -> SkinMaps:
         """Maps of some rows with changes that are ready for this face applied; see `rows`."""
