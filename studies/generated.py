@@ -49,6 +49,7 @@ MAKERS = {
         "src/cutis/data/tones/*.csv", "docs/tones.md#path", "docs/tones.md#halves",
     ],
     "studies.tone_accuracy": ["docs/tones.md#tones*", "docs/images/tones.jpg"],
+    "studies.preset_sheet": ["docs/presets.md#presets", "docs/images/presets.jpg"],
     "studies.build_appearance": ["src/cutis/data/page/*.csv", "src/cutis/data/page/*.ttf"],
     "studies.albedo_accuracy": ["docs/albedo.md#*"],
     "studies.albedo_inversion": ["docs/subsurface.md#*", "docs/images/subsurface.png"],

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
 from cutis.colour import ita
+from cutis.colour.difference import to_relative_xyz
 from cutis.errors import CutisError
 from cutis.looks.tone_path import TonePath
 
@@ -22,12 +23,16 @@ SURE = 0.5
 """Confidence from which on a texel counts as skin."""
 LIMIT = 2.5
 """Standard deviations of a face's tones beyond which differences grow slower."""
-STRONGEST = 1.5
+STRONGEST = 1.6
 """How much more, or less, strongly than measured ones a face's tones may be spread."""
 ASIDE = 1.0
 """How far a face may be from the path, in standard deviations of people of its new tone."""
 LIGHTEST = float(np.log(0.62))
 """Log red that no skin gets above."""
+REDS = (2.0, 4.0)
+"""Standard deviations of log R over G and B from which on a texel is as red as lips."""
+LUMINANCE = np.array([0.21, 0.72, 0.07])
+"""Of log RGB, about."""
 BELOW_SKIN = 0.5
 """Log RGB that hair must be darker than the new skin around it."""
 
@@ -61,6 +66,7 @@ class Spread:
     direction: Array
     deviation: float
     covariance: Array
+    reds: Array
 
     @property
     def limit(self) -> float:
@@ -91,6 +97,17 @@ class Way:
     dark: Array = field(default_factory=lambda: np.zeros(3))
     along_path: bool = True
 
+    @property
+    def scale(self) -> float:
+        """Of differences in CIELAB that are kept: they shrink with the cube root of what is dark.
+
+        Those of darker people are no larger.
+        """
+        s = self.spread
+        later = s.median + self.shift + self.path.colour(self.tone) - self.path.colour(s.tone)
+        ratio = float(np.exp(LUMINANCE @ (later - s.median) / 3))
+        return ratio * float(np.mean(self.aside))
+
     def __call__(self, colours: Map, confidence: Map, weights: Map, degrees: Map) -> Map:
         """Colours (h, W, 3) moved, `weights` (h, W) of the way."""
         from cutis.looks.tone_kernel import move
@@ -101,7 +118,8 @@ class Way:
         move(
             len(colours), colours, confidence, weights, degrees, s.median, s.line, s.light,
             s.direction, self.shift, self.aside, self.mix, path.colours, float(path.tones[0]),
-            path.step, np.array([s.tone, self.tone]), self.strength, LIGHTEST, self.dark, out,
+            path.step, np.array([s.tone, self.tone]), self.strength, LIGHTEST, self.dark, s.reds,
+            self.scale, to_relative_xyz(), np.linalg.inv(to_relative_xyz()), out,
         )  # fmt: skip
         return out
 
@@ -127,7 +145,9 @@ def spread_of(sample: Sample, path: TonePath) -> Spread:
     light = max(float(np.mean(np.diag(found) - np.diag(skins))), 0.05**2)
     inverse = np.linalg.inv(skins + light)
     line, shade = deviation**2 * direction @ inverse, light * np.ones(3) @ inverse
-    return Spread(median, tone, line, shade, direction, deviation, found)
+    red = d[:, 0] - 0.5 * (d[:, 1] + d[:, 2])
+    usual = max(float(1.4826 * np.median(np.abs(red))), 0.03)
+    return Spread(median, tone, line, shade, direction, deviation, found, np.array(REDS) * usual)
 
 
 def solve(sample: Sample, spread: Spread, goal: Goal, path: TonePath, found: "Seen") -> Way:
