@@ -25,7 +25,7 @@ RANDOM, TEXELS = 500_000, 40_000
 
 def errors(band: int, rng: np.random.Generator) -> np.ndarray:
     """Table minus solver (48 directions) at random skins, some of them at ends of the range."""
-    space, lam = albedo_space(), WAVELENGTHS[band : band + 1]
+    space, lam = albedo_space(ALIAGA2022), WAVELENGTHS[band : band + 1]
     found = []
     for _ in range(BLOCKS):
         u = rng.random((SIZE, 5))
@@ -66,7 +66,7 @@ def accuracy() -> str:
 
 
 def timing() -> str:
-    space, skins = albedo_space(), uniform(PAIRS).astype(np.float32)
+    space, skins = albedo_space(ALIAGA2022), uniform(PAIRS).astype(np.float32)
     lines = [
         f"| {PAIRS:,} skins on {os.cpu_count()} cores | seconds |".replace(",", " "),
         "|---|---|",
@@ -74,7 +74,7 @@ def timing() -> str:
     for name, call in (
         ("reflectance, 41 bands", space.reflectance),
         ("linear sRGB", space.rgb),
-        ("linear sRGB by the colour table", colour_table().rgb),
+        ("linear sRGB by the colour table", colour_table(ALIAGA2022).rgb),
         ("linear sRGB and its 15 slopes", space.rgb_gradient),
     ):
         call(skins[:10])  # compiles

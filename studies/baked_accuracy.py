@@ -14,7 +14,7 @@ from cutis.inverse.baked import Solver, exact_inverse, probable_skins
 from cutis.inverse.model import Model
 from cutis.inverse.shipped import EXACT, MEASURED, shipped_encoder, shipped_prior
 from cutis.maps import load_model
-from cutis.optics import from_coordinates
+from cutis.optics import ALIAGA2022, from_coordinates
 from studies.figures.subjects import data_folder, every_face
 from studies.pages import rewrite
 
@@ -30,7 +30,7 @@ def baked(model: Model, space: AlbedoSpace, solve: Solver) -> str:
         "|---|---|---|---|---|---|",
     ]
     for name, captured in track(list(every_face(data_folder(None), TEXELS)), model.name):
-        gains = np.array(calibrate(captured, white="auto", tissue=model.tissue).gains)
+        gains = np.array(calibrate(captured, model.tissue, white="auto").gains)
         colours = (captured * gains).astype(np.float32)
         fitted, skins = space.rgb(from_coordinates(solve(colours))), model.encode(colours)
         inside = delta_e(fitted, colours) < IN_GAMUT
@@ -45,8 +45,8 @@ def baked(model: Model, space: AlbedoSpace, solve: Solver) -> str:
 
 
 if __name__ == "__main__":
-    model, space = load_model(EXACT), albedo_space()
-    rewrite("models.md", baked=baked(model, space, exact_inverse(shipped_encoder())))
+    model, space = load_model(EXACT), albedo_space(ALIAGA2022)
+    rewrite("models.md", baked=baked(model, space, exact_inverse(shipped_encoder(), space)))
     model = load_model(MEASURED)
     space = albedo_space(model.tissue)
     solve = probable_skins(shipped_prior(), space)

@@ -18,6 +18,7 @@ from scipy.stats import t as student
 
 from cutis.albedo import albedo_space
 from cutis.colour.transfer import decode_srgb
+from cutis.optics import ALIAGA2022
 from cutis.render.cycles import INDEX, METHOD, base_colour, facing, radius
 from cutis.render.cycles_process import render
 from cutis.render.inversion import single_scattering_albedo
@@ -42,7 +43,7 @@ MONK = "albedo/monk_skin_tone.csv"
 def tones() -> dict[str, np.ndarray]:
     """Linear Rec.709 albedo of skins from very light to very dark, and of greys."""
     skins = [(m, b, 100.0, 0.7, 0.75) for m in MELANIN for b in BLOOD]
-    rgb = albedo_space().rgb(np.array(skins))
+    rgb = albedo_space(ALIAGA2022).rgb(np.array(skins))
     found = {
         f"melanin {m:g}, blood {b:g}": colour for (m, b, *_), colour in zip(skins, rgb, strict=True)
     }
@@ -74,7 +75,7 @@ def dark(albedo: np.ndarray) -> bool:
 def scenes(albedo: np.ndarray, mesh: str) -> list[Scene]:
     """The same picture with several seeds."""
     colour = base_colour(albedo)
-    lengths = radius(colour, mean_free_path())
+    lengths = radius(colour, mean_free_path(ALIAGA2022))
     samples = 256 if mesh == "patch" and dark(albedo) else 64
     return [
         Scene(

@@ -39,9 +39,11 @@ MANIFEST = ROOT / "docs" / "generated.json"
 MAKERS = {
     "studies.build_colour_tables": ["src/cutis/data/colour/*.csv"],
     "studies.build_albedo_table": ["src/cutis/data/albedo/*.npz"],
-    "studies.train_prior": ["src/cutis/data/weights/measured2026-prior.npz"],
+    "studies.train_prior": ["src/cutis/data/weights/*-prior.npz"],
     "studies.build_weights": [
         "src/cutis/data/weights/measured2026.npz",
+        "src/cutis/data/weights/measured2026b.npz",
+        "src/cutis/data/weights/measured2026b-trust.npz",
         "src/cutis/data/weights/measured2026-trust.npz",
         "src/cutis/data/weights/aliaga2022-exact.npz",
     ],
@@ -60,7 +62,6 @@ MAKERS = {
     "studies.illuminant_accuracy": ["docs/colour.md#*"],
     "studies.kubelka_munk_accuracy": ["docs/models.md#kubelka*"],
     "studies.light_alternatives": ["docs/decisions/0009-illuminants.md#*"],
-    "studies.look_schema": ["docs/look.schema.json"],
     "studies.lut_accuracy": ["docs/lut.md#*"],
     "studies.model_accuracy": [
         "docs/models.md#recovery", "docs/models.md#smooth", "docs/models.md#loop",

@@ -20,7 +20,7 @@ from cutis.colour import (
 )
 from cutis.colour.observer import colour_matching
 from cutis.colour.spectra import XYZ_TO_SRGB
-from cutis.optics import MEASURED2026, WAVELENGTHS
+from cutis.optics import ALIAGA2022, MEASURED2026, WAVELENGTHS
 from studies.figures.measured import BANDS, measured_skins
 from studies.figures.subjects import data_folder
 from studies.pages import rewrite
@@ -71,7 +71,7 @@ def main() -> None:
         raise SystemExit("the larger data is absent; name its folder")
     skins = measured_skins(data)
     truth = reflectance_to_rgb(skins, BANDS)
-    space = albedo_space()
+    space = albedo_space(ALIAGA2022)
     synthetic = uniform(20_000, 5)
     synthetic = space.reflectance(synthetic[is_skin_colour(space.rgb(synthetic))])
     rows = [

@@ -17,10 +17,9 @@ from cutis import estimate, read, read_mask
 from cutis.albedo import albedo_space
 from cutis.albedo.kubelka_munk import EPIDERMES, KubelkaMunkSkin
 from cutis.colour import delta_e, is_skin_colour, reflectance_to_rgb
-from cutis.inverse import Model
 from cutis.inverse.kubelka_munk import KubelkaMunkInverse
 from cutis.maps import load_model
-from cutis.optics import ALIAGA2022, WAVELENGTHS, Tissue
+from cutis.optics import ALIAGA2022, WAVELENGTHS, from_coordinates
 from cutis.transport import Layer, stack_balance
 from studies.figures.measured import BANDS, measured_skins
 from studies.figures.subjects import data_folder
@@ -44,15 +43,15 @@ class ExactSkin(KubelkaMunkSkin):
 
 WHOLE = {"melanin": (0.001, 1.0), "blood": (0.001, 1.0)}
 VARIANTS = {
-    "`kubelka-munk`": KubelkaMunkSkin(),
-    "the same, star1988": KubelkaMunkSkin(conversion="star1988"),
-    "the same, plain": KubelkaMunkSkin(conversion="plain"),
-    "the same, whole ranges": KubelkaMunkSkin(**WHOLE),
-    "the same, epidermis of 80 µm": KubelkaMunkSkin(thickness=80.0),
-    "epidermis of two fluxes": KubelkaMunkSkin(epidermis="scattering"),
-    "the same, 80 µm": KubelkaMunkSkin(epidermis="scattering", thickness=80.0),
-    "exact transport, two parameters": ExactSkin(**WHOLE),
-    "the same, 80 µm ": ExactSkin(thickness=80.0, **WHOLE),
+    "`kubelka-munk`": KubelkaMunkSkin(ALIAGA2022),
+    "the same, star1988": KubelkaMunkSkin(ALIAGA2022, conversion="star1988"),
+    "the same, plain": KubelkaMunkSkin(ALIAGA2022, conversion="plain"),
+    "the same, whole ranges": KubelkaMunkSkin(ALIAGA2022, **WHOLE),
+    "the same, epidermis of 80 µm": KubelkaMunkSkin(ALIAGA2022, thickness=80.0),
+    "epidermis of two fluxes": KubelkaMunkSkin(ALIAGA2022, epidermis="scattering"),
+    "the same, 80 µm": KubelkaMunkSkin(ALIAGA2022, epidermis="scattering", thickness=80.0),
+    "exact transport, two parameters": ExactSkin(ALIAGA2022, **WHOLE),
+    "the same, 80 µm ": ExactSkin(ALIAGA2022, thickness=80.0, **WHOLE),
 }
 ON_FACES = ("`kubelka-munk`", "epidermis of two fluxes", "exact transport, two parameters")
 
@@ -65,8 +64,7 @@ def errors(model: np.ndarray, truth: np.ndarray) -> str:
 
 def reconstructed(skin: KubelkaMunkSkin, colours: np.ndarray) -> np.ndarray:
     inverse = KubelkaMunkInverse(skin)
-    model = Model("", inverse.encode, inverse.decode)
-    return model.decode(model.encode(colours))
+    return inverse.decode(from_coordinates(inverse.encode(colours)))
 
 
 def faces(data: Path) -> str:
@@ -106,7 +104,7 @@ def measured(data: Path) -> str:
     return "\n".join(rows)
 
 
-def transport(tissue: Tissue = ALIAGA2022) -> str:
+def transport() -> str:
     """Either epidermis against the exact solver in space, at the same parameters."""
     rows = [
         "| melanin | " + " | ".join(f"{e}, 200 µm | {e}, 80 µm" for e in EPIDERMES) + " |",
@@ -116,7 +114,7 @@ def transport(tissue: Tissue = ALIAGA2022) -> str:
         cells = []
         for epidermis in EPIDERMES:
             for thickness in (200.0, 80.0):
-                skin = KubelkaMunkSkin(epidermis=epidermis, thickness=thickness)
+                skin = KubelkaMunkSkin(ALIAGA2022, epidermis=epidermis, thickness=thickness)
                 exact = reflectance_to_rgb(solved(skin, melanin), WAVELENGTHS)
                 cells.append(f"{delta_e(skin.rgb(melanin, BLOOD), exact):.1f}")
         rows.append(f"| {melanin:g} | {' | '.join(cells)} |")

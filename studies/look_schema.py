@@ -4,7 +4,6 @@ import json
 from pathlib import Path
 
 from cutis.looks import Look
-from studies.generated import record
 
 PATH = Path(__file__).parents[1] / "docs" / "look.schema.json"
 
@@ -16,5 +15,4 @@ def text() -> str:
 
 if __name__ == "__main__":
     PATH.write_text(text(), encoding="utf-8")
-    record(PATH)
     print(f"wrote {PATH}")

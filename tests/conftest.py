@@ -96,6 +96,7 @@ def face_rgb():
     import numpy as np
 
     from cutis.albedo import albedo_space
+    from cutis.optics import ALIAGA2022
 
     height, width = 24, 32
     y, x = np.mgrid[:height, :width]
@@ -110,7 +111,7 @@ def face_rgb():
         axis=-1,
     )
     grain = 1 + 0.01 * np.random.default_rng(0).standard_normal((height, width, 1))
-    rgb = (albedo_space().rgb(skins) * grain).astype(np.float32)
+    rgb = (albedo_space(ALIAGA2022).rgb(skins) * grain).astype(np.float32)
     rgb.flags.writeable = False
     return rgb
 

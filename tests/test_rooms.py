@@ -1,6 +1,7 @@
 """The order of rooms: imports go one way, and slow packages wait until they are needed."""
 
 import ast
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -23,6 +24,7 @@ ROOMS = (
     "looks",
     "luts",
     "report",
+    "checks",
     "render",
     "jobs",
     "apps",
@@ -39,6 +41,8 @@ SLOW = {
     "onnxruntime": set(),
 }
 """Packages imported only inside functions, and the modules exempt from that."""
+CHOSEN = {"Tissue", "AlbedoSpace", "SpectralTable", "KubelkaMunkSkin", "Model"}
+"""What nobody below `maps` chooses for others; `maps.defaults` says what users get."""
 NOT_ROOMS = {"data"}
 TESTS_OF_NO_ROOM = {"benchmarks", "studies", "validation"}
 
@@ -100,6 +104,32 @@ def violations(path: Path, package: Path = PACKAGE) -> list[str]:
     return found
 
 
+def silent_choices(path: Path, package: Path = PACKAGE) -> list[str]:
+    """Arguments and fields below `maps` that stand for a tissue or model when none is named."""
+    module = module_name(path, package)
+    room = module.partition(".")[0]
+    if room not in ROOMS or ROOMS.index(room) >= ROOMS.index("maps"):
+        return []
+    found = []
+    for node in ast.walk(ast.parse(path.read_text("utf-8"), filename=str(path))):
+        pairs: list[tuple[ast.expr | None, ast.expr | None]] = []
+        if isinstance(node, ast.arguments):
+            places = [*node.posonlyargs, *node.args]
+            given = [None] * (len(places) - len(node.defaults)) + node.defaults
+            pairs = [(a.annotation, d) for a, d in zip(places, given, strict=True)]
+            pairs += [
+                (a.annotation, d) for a, d in zip(node.kwonlyargs, node.kw_defaults, strict=True)
+            ]
+        elif isinstance(node, ast.ClassDef):
+            pairs = [(s.annotation, s.value) for s in node.body if isinstance(s, ast.AnnAssign)]
+        for annotation, default in pairs:
+            if annotation is not None and default is not None:
+                words = set(re.findall(r"\w+", ast.unparse(annotation)))
+                if words & CHOSEN:
+                    found.append(f"{path.relative_to(package)}: {ast.unparse(annotation)}")
+    return found
+
+
 def modules() -> list[Path]:
     return sorted(path for path in PACKAGE.rglob("*.py") if "data" not in path.parts)
 
@@ -113,6 +143,28 @@ def test_imports_keep_the_order_of_rooms():
     found = [line for path in modules() for line in violations(path)]
     assert modules()
     assert not found, "\n".join(found)
+
+
+def test_nothing_below_maps_has_a_tissue_or_model_of_its_own():
+    found = [line for path in modules() for line in silent_choices(path)]
+    assert not found, "\n".join(found)
+
+
+@pytest.mark.parametrize(
+    ("file", "source", "count"),
+    [
+        ("inverse/a.py", "def f(rgb: Rows, tissue: Tissue = ALIAGA2022): ...", 1),
+        ("albedo/a.py", "def f(*, space: AlbedoSpace | None = None): ...", 1),
+        ("albedo/a.py", "class A:\n    tissue: Tissue = ALIAGA2022", 1),
+        ("inverse/a.py", "def f(rgb: Rows, tissue: Tissue, count: int = 3): ...", 0),
+        ("maps/a.py", "def f(tissue: Tissue | None = None): ...", 0),
+    ],
+)
+def test_silent_choices_are_seen(tmp_path, file, source, count):
+    path = tmp_path / file
+    path.parent.mkdir(parents=True)
+    path.write_text(source)
+    assert len(silent_choices(path, tmp_path)) == count
 
 
 def test_every_folder_is_a_room():

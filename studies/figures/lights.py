@@ -5,7 +5,7 @@ import numpy as np
 from cutis.albedo import albedo_space
 from cutis.colour import delta_e, light_conversion
 from cutis.inverse import colours_under, metamers, spread
-from cutis.optics import NAMES, PARAMETERS, WAVELENGTHS
+from cutis.optics import ALIAGA2022, NAMES, PARAMETERS, WAVELENGTHS
 from cutis.report.appearance import displayed
 from studies.figures.layout import curves, grid, magnified
 from studies.figures.section import Section, table
@@ -54,11 +54,11 @@ def draw_illuminants(cast: Cast) -> Section:
 
 def draw_metamers(cast: Cast) -> Section:
     """Families of skins within one ΔE00, what they span, how they part under other lights."""
-    space, panels, ranges, parted, swatches = albedo_space(), [], [], [], []
+    space, panels, ranges, parted, swatches = albedo_space(ALIAGA2022), [], [], [], []
     means: dict[tuple[str, str], float] = {}
     spans: dict[str, np.ndarray] = {}
     for tone, skin in TONES.items():
-        family = metamers(space.rgb(np.array(skin)), 1.0, 1000)
+        family = metamers(space.rgb(np.array(skin)), 1.0, 1000, space=space)
         low, high = np.percentile(family.skins, [5, 95], axis=0)
         spans[tone] = high / low
         ranges.append(
@@ -68,7 +68,7 @@ def draw_metamers(cast: Cast) -> Section:
                 for p, a, b in zip(PARAMETERS, low, high, strict=True)
             ]
         )  # fmt: skip
-        colours = colours_under(family.skins, LIGHTS)
+        colours = colours_under(family.skins, LIGHTS, space)
         for light in LIGHTS:
             errors = spread(colours[light])
             means[tone, light] = float(errors.mean())

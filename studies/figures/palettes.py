@@ -4,7 +4,7 @@ import numpy as np
 
 from cutis.albedo import albedo_space
 from cutis.colour import delta_e
-from cutis.optics import NAMES, parameter
+from cutis.optics import ALIAGA2022, NAMES, parameter
 from cutis.report.appearance import displayed
 from studies.figures.layout import grid
 from studies.figures.section import Section, table
@@ -32,7 +32,7 @@ def palette(**held: float) -> np.ndarray:
     skins[..., 0], skins[..., 1] = melanin[:, None], blood
     for name, value in (MIDDLE | held).items():
         skins[..., NAMES.index(name)] = value
-    return albedo_space().rgb(skins)
+    return albedo_space(ALIAGA2022).rgb(skins)
 
 
 def draw(cast: Cast) -> Section:

@@ -4,7 +4,7 @@ import numpy as np
 
 from cutis.albedo import albedo_space
 from cutis.colour import lab, reflectance_to_rgb
-from cutis.optics import WAVELENGTHS
+from cutis.optics import ALIAGA2022, WAVELENGTHS
 from cutis.report.appearance import displayed
 from studies.figures.layout import curves, grid
 from studies.figures.measured import BANDS, measured_skins
@@ -23,7 +23,7 @@ PRINTED = (450.0, 550.0, 580.0, 650.0)
 
 def draw(cast: Cast) -> Section:
     """Both series, with measured skins behind them where they are at hand."""
-    space = albedo_space()
+    space = albedo_space(ALIAGA2022)
     series = {
         "melanin": (MELANIN, [(m / 100, 0.02, *HELD) for m in MELANIN]),
         "blood": (BLOOD, [(0.008, b / 100, *HELD) for b in BLOOD]),

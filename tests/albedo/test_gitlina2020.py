@@ -88,7 +88,7 @@ def test_a_fixed_parameter_is_the_same_as_that_parameter():
     skins = np.array([[0.02, 0.02, 0.7, 0.7], [0.3, 0.1, 0.2, 0.1]])
     whole = np.insert(skins, 2, 80.0, axis=1)
     np.testing.assert_allclose(
-        held.reflectance(skins), albedo_space().reflectance(whole), atol=2e-5
+        held.reflectance(skins), albedo_space(ALIAGA2022).reflectance(whole), atol=2e-5
     )
 
 

@@ -11,7 +11,7 @@ from cutis.optics import ALIAGA2022, WAVELENGTHS
 from cutis.transport import Layer, stack_balance
 from cutis.transport.kubelka_munk import coefficients, half_space
 
-SKIN = KubelkaMunkSkin()
+SKIN = KubelkaMunkSkin(ALIAGA2022)
 
 
 def test_reflectance_by_hand_at_550_nm():
@@ -43,7 +43,7 @@ def test_chromophores_pass_through():
 
 @pytest.mark.parametrize("epidermis", ["absorbing", "scattering"])
 def test_more_of_either_is_darker(epidermis):
-    skin = KubelkaMunkSkin(epidermis=epidermis)
+    skin = KubelkaMunkSkin(ALIAGA2022, epidermis=epidermis)
     axis = np.linspace(0.002, 0.07, 30)
     assert np.all(np.diff(skin.reflectance(axis, 0.02), axis=0) < 0)
     assert np.all(np.diff(skin.reflectance(0.02, axis)[:, 2:30], axis=0) < 0)
@@ -74,7 +74,7 @@ def test_two_fluxes_are_near_to_transport_of_the_same_skin():
             layers = [Layer(above, scattering, g, 0.02), Layer(below, scattering, g)]
             exact = stack_balance(layers, dimension=3, count=16).reflected
             for name, errors in error.items():
-                ours = KubelkaMunkSkin(epidermis=name).reflectance(melanin, 0.02)[i]
+                ours = KubelkaMunkSkin(ALIAGA2022, epidermis=name).reflectance(melanin, 0.02)[i]
                 errors.append(abs(ours / exact - 1))
     assert max(error["scattering"]) < 0.13
     assert max(error["absorbing"]) > 0.5
@@ -86,11 +86,11 @@ def test_two_fluxes_are_near_to_transport_of_the_same_skin():
     [
         (lambda: SKIN.reflectance(-0.01, 0.02), "melanin is a volume fraction"),
         (lambda: SKIN.rgb(0.02, np.array([0.1, np.nan])), "blood is a volume fraction"),
-        (lambda: KubelkaMunkSkin(conversion="saunderson"), "gate1974"),
-        (lambda: KubelkaMunkSkin(epidermis="none"), "absorbing, scattering"),
-        (lambda: KubelkaMunkSkin(thickness=2.0), "thickness = 2 is outside"),
-        (lambda: KubelkaMunkSkin(blood=(0.07, 0.001)), "blood must rise"),
-        (lambda: KubelkaMunkSkin(melanin=(0.0, 0.4)), "melanin = 0 is outside"),
+        (lambda: KubelkaMunkSkin(ALIAGA2022, conversion="saunderson"), "gate1974"),
+        (lambda: KubelkaMunkSkin(ALIAGA2022, epidermis="none"), "absorbing, scattering"),
+        (lambda: KubelkaMunkSkin(ALIAGA2022, thickness=2.0), "thickness = 2 is outside"),
+        (lambda: KubelkaMunkSkin(ALIAGA2022, blood=(0.07, 0.001)), "blood must rise"),
+        (lambda: KubelkaMunkSkin(ALIAGA2022, melanin=(0.0, 0.4)), "melanin = 0 is outside"),
     ],
 )
 def test_bad_input_is_one_line(make, what):

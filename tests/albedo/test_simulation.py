@@ -21,17 +21,17 @@ def whole(one):
 
 def test_skins_against_the_solver():
     """205 albedos with their own errors: the largest (Bonferroni) and all together (χ²)."""
-    mean, error = whole(SkinSimulation(SKINS, Walks(photons=4000, seed=12)))
-    z = (mean - albedo_space().reflectance(SKINS)) / error
+    mean, error = whole(SkinSimulation(SKINS, Walks(ALIAGA2022, photons=4000, seed=12)))
+    z = (mean - albedo_space(ALIAGA2022).reflectance(SKINS)) / error
     assert mean.shape == error.shape == (5, 41)
     assert np.abs(z).max() < norm.isf(LEVEL / (2 * z.size))
     assert chi2.isf(1 - LEVEL, z.size) < np.sum(z**2) < chi2.isf(LEVEL, z.size)
 
 
 def test_batches_do_not_change_a_bit(monkeypatch):
-    one = whole(SkinSimulation(SKINS, Walks(photons=500)))
+    one = whole(SkinSimulation(SKINS, Walks(ALIAGA2022, photons=500)))
     monkeypatch.setattr(simulation, "BATCH_PHOTONS", 2 * 500 * 41)
-    cut = SkinSimulation(SKINS, Walks(photons=500))
+    cut = SkinSimulation(SKINS, Walks(ALIAGA2022, photons=500))
     assert (cut.size, cut.batches) == (2, 3)
     for a, b in zip(one, whole(cut), strict=True):
         assert np.array_equal(a, b)
@@ -41,17 +41,19 @@ def test_batches_do_not_change_a_bit(monkeypatch):
 
 
 def test_seeds_differ():
-    first, second = (whole(SkinSimulation(SKINS[:1], Walks(photons=300, seed=s))) for s in (0, 1))
+    first, second = (
+        whole(SkinSimulation(SKINS[:1], Walks(ALIAGA2022, photons=300, seed=s))) for s in (0, 1)
+    )
     assert not np.array_equal(first[0], second[0])
 
 
 def test_a_tensor_against_the_solver():
     """One number per band and thickness is independent: the mean of z over the absorptions."""
-    tensor = TensorSimulation((6, 4, 3, 2, 2), Walks(photons=4000, seed=2))
+    tensor = TensorSimulation((6, 4, 3, 2, 2), Walks(ALIAGA2022, photons=4000, seed=2))
     assert tensor.batches == 41
     mean, error = whole(tensor)
     assert mean.shape == error.shape == (6 * 4 * 3 * 2 * 2, 41)
-    exact = albedo_space().reflectance(tensor.skins)
+    exact = albedo_space(ALIAGA2022).reflectance(tensor.skins)
     z = (mean - exact) / error
     alike = z.reshape(6, 4, 3, 2, 2, 41).mean(axis=(0, 1, 3, 4))  # (thickness, band)
     assert np.abs(alike).max() < norm.isf(LEVEL / (2 * alike.size))
@@ -73,13 +75,13 @@ def test_nodes_of_a_grid():
 @pytest.mark.parametrize(
     ("make", "what"),
     [
-        (lambda: Walks(photons=0), "photons = 0"),
+        (lambda: Walks(ALIAGA2022, photons=0), "photons = 0"),
         (lambda: Walks(GITLINA2020), "five free parameters"),
-        (lambda: SkinSimulation(np.zeros((2, 4)), Walks()), r"\(n, 5\)"),
-        (lambda: SkinSimulation(np.zeros((0, 5)), Walks()), r"\(n, 5\)"),
-        (lambda: SkinSimulation(np.zeros((1, 5)), Walks()), "melanin"),
-        (lambda: SkinSimulation(np.full((1, 5), np.nan), Walks()), "melanin"),
-        (lambda: TensorSimulation((4, 4, 0, 1, 1), Walks()), "above zero"),
+        (lambda: SkinSimulation(np.zeros((2, 4)), Walks(ALIAGA2022)), r"\(n, 5\)"),
+        (lambda: SkinSimulation(np.zeros((0, 5)), Walks(ALIAGA2022)), r"\(n, 5\)"),
+        (lambda: SkinSimulation(np.zeros((1, 5)), Walks(ALIAGA2022)), "melanin"),
+        (lambda: SkinSimulation(np.full((1, 5), np.nan), Walks(ALIAGA2022)), "melanin"),
+        (lambda: TensorSimulation((4, 4, 0, 1, 1), Walks(ALIAGA2022)), "above zero"),
         (
             lambda: TensorSimulation(
                 (2, 2, 1, 1, 1),

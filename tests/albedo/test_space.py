@@ -9,7 +9,7 @@ from cutis.errors import CutisError
 from cutis.optics import ALIAGA2022, NAMES, PARAMETERS, WAVELENGTHS
 from cutis.transport import two_layer_albedo
 
-SPACE = albedo_space()
+SPACE = albedo_space(ALIAGA2022)
 SKINS = uniform(500, seed=11)
 
 
@@ -49,7 +49,7 @@ def test_spectra_into_an_array_that_is_there():
 
 
 def test_one_space_per_tissue():
-    assert albedo_space() is albedo_space(ALIAGA2022)
+    assert albedo_space(ALIAGA2022) is albedo_space(ALIAGA2022)
 
 
 def exact_slope(skin, steps):

@@ -14,7 +14,7 @@ import pytest
 from cutis.albedo import grid_skins, halton
 from cutis.inverse.lookup import tensor_of_spectra
 from cutis.jobs.journal import Journal
-from cutis.optics import NAMES, WAVELENGTHS
+from cutis.optics import ALIAGA2022, NAMES, WAVELENGTHS
 
 MAIN = "from cutis.apps.main import main; main()"
 QUICK = "import cutis.albedo.simulation as s; s.BATCH_PHOTONS = 200_000\n"
@@ -124,7 +124,7 @@ def test_another_simulation_is_not_mixed_in(tmp_path, cutis):
     from cutis.albedo import SkinSimulation, Walks
 
     out = tmp_path / "set.csv"
-    Journal(SkinSimulation(np.asarray(halton(2, 0)), Walks(photons=10)), out)
+    Journal(SkinSimulation(np.asarray(halton(2, 0)), Walks(ALIAGA2022, photons=10)), out)
     ended = cutis("simulate", "--dataset", "2", "--photons", "20", "-o", out)
     assert ended.code == 1
     assert "set.csv.parts holds a simulation with another photons" in ended.err
@@ -203,7 +203,7 @@ def test_a_damaged_batch_is_named(cutis, tmp_path):
     from cutis.albedo import SkinSimulation, Walks
 
     out = tmp_path / "set.csv"
-    journal = Journal(SkinSimulation(np.asarray(halton(1, 0)), Walks(photons=10)), out)
+    journal = Journal(SkinSimulation(np.asarray(halton(1, 0)), Walks(ALIAGA2022, photons=10)), out)
     (journal.folder / "000000.npy").write_bytes(b"nothing")
     ended = cutis("simulate", "--dataset", "1", "--photons", "10", "-o", out)
     assert ended.code == 1

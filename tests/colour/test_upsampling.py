@@ -14,7 +14,7 @@ from cutis.colour import (
 )
 from cutis.colour.observer import illuminant_names, wavelengths
 from cutis.errors import CutisError
-from cutis.optics import WAVELENGTHS
+from cutis.optics import ALIAGA2022, WAVELENGTHS
 
 
 def test_the_basis_is_the_published_one():
@@ -61,7 +61,7 @@ def test_conversion_is_upsampling_and_summing():
 
 @pytest.mark.parametrize("light", ["A", "FL2", "FL11", "LED-B3", "LED-V1", "D65-prime"])
 def test_skins_come_closer_to_their_colour_under_d65(light):
-    space = albedo_space()
+    space = albedo_space(ALIAGA2022)
     skins = uniform(4000, 1)
     truth = space.rgb(skins)
     skins, truth = skins[is_skin_colour(truth)], truth[is_skin_colour(truth)]

@@ -9,7 +9,7 @@ from cutis.albedo import albedo_space, uniform
 from cutis.colour import delta_e, is_skin_colour
 from cutis.errors import CutisError
 from cutis.inverse.fit import explain, fit, logistic, logit
-from cutis.optics import GITLINA2020, from_coordinates
+from cutis.optics import ALIAGA2022, GITLINA2020, from_coordinates
 
 CENTRE = np.array([0.4, 0.5, 0.4, 0.5, 0.6])
 PRECISION = np.diag([0.5, 0.8, 2.0, 1.5, 1.0])
@@ -22,7 +22,7 @@ def skins(count: int, seed: int = 0) -> np.ndarray:
 
 def cost(u: np.ndarray, colour: np.ndarray) -> float:
     """The function that `fit.py` states, in double precision but for the albedo space."""
-    residual = albedo_space().rgb(from_coordinates(u)).astype(np.float64) - colour
+    residual = albedo_space(ALIAGA2022).rgb(from_coordinates(u)).astype(np.float64) - colour
     scale = TOLERANCE * (colour.mean() + 0.01) ** (2 / 3)
     z = np.log(u / (1 - u)) - np.log(CENTRE / (1 - CENTRE))
     return float(np.sum((residual / scale) ** 2) + z @ PRECISION @ z)
@@ -35,7 +35,7 @@ def test_logit_and_logistic_are_inverse():
 
 
 def test_colours_of_skins_are_explained():
-    space = albedo_space()
+    space = albedo_space(ALIAGA2022)
     colours = space.rgb(from_coordinates(skins(300)))
     found = space.rgb(from_coordinates(fit(space, colours, CENTRE, PRECISION, TOLERANCE)))
     errors = delta_e(found, colours)
@@ -44,7 +44,7 @@ def test_colours_of_skins_are_explained():
 
 
 def test_no_worse_than_a_general_solver():
-    space = albedo_space()
+    space = albedo_space(ALIAGA2022)
     colours = space.rgb(from_coordinates(skins(8, seed=4))).astype(np.float64)
     ours = fit(space, colours, CENTRE, PRECISION, TOLERANCE, iterations=60).astype(np.float64)
     root = np.sqrt(PRECISION)
@@ -63,7 +63,7 @@ def test_no_worse_than_a_general_solver():
 
 def test_optimum_is_flat():
     """Small moves in any direction do not lower the cost."""
-    space = albedo_space()
+    space = albedo_space(ALIAGA2022)
     colours = space.rgb(from_coordinates(skins(5, seed=9))).astype(np.float64)
     found = fit(space, colours, CENTRE, PRECISION, TOLERANCE, iterations=60).astype(np.float64)
     rng = np.random.default_rng(2)
@@ -79,14 +79,14 @@ def test_optimum_is_flat():
     [(0, 0, 0), (1, 1, 1), (0, 0, 1), (0, 1, 0), (5, 4, 3), (-0.2, 0.3, 0.1), (1e6, 1e6, 1e6)],
 )
 def test_absurd_colours_stay_in_range(colour):
-    u = fit(albedo_space(), np.array([colour]), CENTRE, PRECISION, TOLERANCE)
+    u = fit(albedo_space(ALIAGA2022), np.array([colour]), CENTRE, PRECISION, TOLERANCE)
     assert np.isfinite(u).all()
     assert u.min() > 0
     assert u.max() < 1
 
 
 def test_each_colour_may_have_its_own_centre():
-    space = albedo_space()
+    space = albedo_space(ALIAGA2022)
     colours = space.rgb(from_coordinates(skins(4)))
     centres = np.tile(CENTRE, (4, 1))
     np.testing.assert_array_equal(
@@ -97,7 +97,7 @@ def test_each_colour_may_have_its_own_centre():
 
 def test_explain_finds_the_nearest_skin_of_a_tissue():
     """Against 300 000 skins of the tissue, spread evenly, for colours in and out of its gamut."""
-    colours = albedo_space().rgb(uniform(3000, 3))
+    colours = albedo_space(ALIAGA2022).rgb(uniform(3000, 3))
     face = colours[is_skin_colour(colours)][:1200].reshape(30, 40, 3)
     maps, model = explain(face, GITLINA2020)
     space = albedo_space(GITLINA2020)
@@ -120,4 +120,4 @@ def test_explain_finds_the_nearest_skin_of_a_tissue():
 )
 def test_what_cannot_be_explained(rgb, what):
     with pytest.raises(CutisError, match=what):
-        explain(rgb)
+        explain(rgb, ALIAGA2022)

@@ -9,9 +9,9 @@ from cutis.colour import delta_e
 from cutis.errors import CutisError
 from cutis.inverse.kubelka_munk import kubelka_munk_inverse
 from cutis.maps import load_model
-from cutis.optics import from_coordinates
+from cutis.optics import ALIAGA2022, from_coordinates
 
-SKIN = KubelkaMunkSkin()
+SKIN = KubelkaMunkSkin(ALIAGA2022)
 LOW, HIGH = np.array([0.1, 0.001**0.25]), np.array([0.43 ** (1 / 3), 0.07**0.25])
 """Ends of the roots of melanin and blood."""
 
@@ -22,7 +22,7 @@ def rgb_of(roots):
 
 @pytest.fixture(scope="module")
 def inverse():
-    return kubelka_munk_inverse()
+    return kubelka_munk_inverse(SKIN)
 
 
 def test_colours_of_the_surface_come_back(inverse):
@@ -69,7 +69,7 @@ def test_nearest_point_on_the_surface(inverse):
 
 
 def test_another_skin_has_another_inverse():
-    skin = KubelkaMunkSkin(thickness=80.0, epidermis="scattering", blood=(0.001, 0.2))
+    skin = KubelkaMunkSkin(ALIAGA2022, thickness=80.0, epidermis="scattering", blood=(0.001, 0.2))
     truth = skin.rgb(np.array([0.01, 0.1]), np.array([0.05, 0.15]))
     found = kubelka_munk_inverse(skin).nearest(truth)
     np.testing.assert_allclose(found, [[0.01, 0.05], [0.1, 0.15]], rtol=1e-3)

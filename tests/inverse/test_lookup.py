@@ -14,7 +14,7 @@ from cutis.inverse.lookup import (
 )
 from cutis.kernels.nearest import curve_order
 from cutis.maps import load_model
-from cutis.optics import PARAMETERS, to_coordinates
+from cutis.optics import ALIAGA2022, PARAMETERS, to_coordinates
 
 SMALL = (16, 12, 3, 2, 2)
 
@@ -30,7 +30,7 @@ def brute_force(points, queries):
 
 @pytest.fixture(scope="module")
 def small():
-    return build_tensor(SMALL)
+    return build_tensor(SMALL, albedo_space(ALIAGA2022))
 
 
 @pytest.mark.parametrize("where", ["gamut", "cube", "far", "nodes", "grey", "one"])
@@ -103,14 +103,18 @@ def test_grid_spans_the_ranges():
 
 def test_a_tensor_of_simulated_spectra():
     skins = grid_skins(SMALL)
-    tensor = tensor_of_spectra(SMALL, albedo_space().reflectance(skins))
-    assert np.allclose(tensor.colours, build_tensor(SMALL).colours, atol=2e-6)
+    tensor = tensor_of_spectra(SMALL, albedo_space(ALIAGA2022).reflectance(skins))
+    assert np.allclose(
+        tensor.colours, build_tensor(SMALL, albedo_space(ALIAGA2022)).colours, atol=2e-6
+    )
 
 
 @pytest.mark.parametrize("name", ["lookup", "lookup-55k"])
 def test_as_a_model(name):
     model = load_model(name)
-    rgb = albedo_space().rgb(np.array([[0.02, 0.02, 80.0, 0.7, 0.7], [0.2, 0.03, 60, 0.9, 0.5]]))
+    rgb = albedo_space(ALIAGA2022).rgb(
+        np.array([[0.02, 0.02, 80.0, 0.7, 0.7], [0.2, 0.03, 60, 0.9, 0.5]])
+    )
     error = np.abs(model.decode(model.encode(rgb)) - rgb).max()
     assert error < {"lookup": 0.01, "lookup-55k": 0.02}[name]
 
@@ -121,7 +125,10 @@ def test_as_a_model(name):
      (4, 4, np.nan, 2, 2), (np.inf, 4, 2, 2, 2), ("a", 4, 2, 2, 2), 5, None],
 )  # fmt: skip
 def test_shapes_that_are_none(shape):
-    for build in (build_tensor, lambda s: tensor_of_spectra(s, np.ones((2, 41)))):
+    for build in (
+        lambda s: build_tensor(s, albedo_space(ALIAGA2022)),
+        lambda s: tensor_of_spectra(s, np.ones((2, 41))),
+    ):
         with pytest.raises(CutisError, match="five whole numbers above zero") as caught:
             build(shape)
         assert "\n" not in str(caught.value)

@@ -10,7 +10,7 @@ from safetensors.numpy import load_file, save_file
 from cutis.albedo import albedo_space, uniform
 from cutis.errors import CutisError
 from cutis.inverse.network import layer_sizes, load_weights
-from cutis.optics import to_coordinates
+from cutis.optics import ALIAGA2022, to_coordinates
 
 WEIGHTS = Path(str(resources.files("cutis.data").joinpath("weights/aliaga2022.safetensors")))
 
@@ -22,7 +22,7 @@ def test_layers_are_those_of_the_paper():
 def test_shipped_weights_close_the_loop():
     networks = load_weights(WEIGHTS)
     skins = uniform(2000, 5)
-    rgb = albedo_space().rgb(skins)
+    rgb = albedo_space(ALIAGA2022).rgb(skins)
     decoded = networks.decoder(to_coordinates(skins))
     assert np.abs(decoded - rgb).mean() < 4e-3
     assert np.abs(networks.decoder(networks.encoder(rgb)) - rgb).mean() < 4e-3

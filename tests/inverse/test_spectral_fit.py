@@ -59,7 +59,7 @@ def solved(skins, wavelengths):
     ids=["table", "visible", "nine"],
 )
 def test_spectra_of_the_exact_solver_give_their_skins(wavelengths):
-    found = fit_spectra(solved(USUAL, wavelengths), wavelengths)
+    found = fit_spectra(solved(USUAL, wavelengths), wavelengths, ALIAGA2022)
     blended = len(wavelengths) == 9  # between the table's wavelengths: exact to 1e-4
     assert found.rmse.max() < (1e-4 if blended else 1e-5)
     np.testing.assert_allclose(
@@ -69,22 +69,22 @@ def test_spectra_of_the_exact_solver_give_their_skins(wavelengths):
 
 def test_no_start_ends_in_another_valley():
     skins = halton(400, seed=5)
-    spectra = SampledSpace(albedo_space(), VISIBLE).reflectance(skins)
-    assert np.quantile(fit_spectra(spectra, VISIBLE).rmse, [0.5, 1.0]) == pytest.approx(
+    spectra = SampledSpace(albedo_space(ALIAGA2022), VISIBLE).reflectance(skins)
+    assert np.quantile(fit_spectra(spectra, VISIBLE, ALIAGA2022).rmse, [0.5, 1.0]) == pytest.approx(
         [0, 0], abs=1e-4
     )
 
 
 def test_specular_part_is_taken_off():
     spectra = 0.028 + 0.972 * solved(USUAL, VISIBLE)
-    found = fit_spectra(spectra, VISIBLE, specular=0.028)
+    found = fit_spectra(spectra, VISIBLE, ALIAGA2022, specular=0.028)
     np.testing.assert_allclose(to_coordinates(found.values), to_coordinates(USUAL), atol=0.01)
-    assert fit_spectra(spectra, VISIBLE).rmse.min() > 50 * found.rmse.max()
+    assert fit_spectra(spectra, VISIBLE, ALIAGA2022).rmse.min() > 50 * found.rmse.max()
 
 
 def test_rmse_is_that_of_the_reflectance_as_measured():
     spectra = 0.05 + 0.9 * solved(USUAL, VISIBLE)
-    fitter = SpectralFitter(VISIBLE, specular=0.03)
+    fitter = SpectralFitter(VISIBLE, ALIAGA2022, specular=0.03)
     found = fitter.fit(spectra)
     residual = fitter.reflectance(found.values) - spectra
     np.testing.assert_allclose(found.rmse, np.sqrt((residual**2).mean(axis=1)), rtol=1e-3)
@@ -96,7 +96,7 @@ def test_covariance_is_that_of_fits_to_noisy_spectra():
     clean = solved(USUAL[:1], VISIBLE)
     rng = np.random.default_rng(11)
     found = fit_spectra(
-        clean + noise * rng.standard_normal((draws, len(VISIBLE))), VISIBLE, noise=noise
+        clean + noise * rng.standard_normal((draws, len(VISIBLE))), VISIBLE, ALIAGA2022, noise=noise
     )
     ratio = (draws - 1) * found.values.var(axis=0, ddof=1) / (found.sigma**2).mean(axis=0)
     low, high = chi2.ppf([1e-4, 1 - 1e-4], draws - 1)
@@ -112,14 +112,14 @@ def test_covariance_is_that_of_fits_to_noisy_spectra():
 def test_noise_is_estimated_from_the_residual():
     rng = np.random.default_rng(2)
     spectra = solved(USUAL[:1], VISIBLE) + 1e-3 * rng.standard_normal((300, len(VISIBLE)))
-    estimated = fit_spectra(spectra, VISIBLE).sigma
-    known = fit_spectra(spectra, VISIBLE, noise=1e-3).sigma
+    estimated = fit_spectra(spectra, VISIBLE, ALIAGA2022).sigma
+    known = fit_spectra(spectra, VISIBLE, ALIAGA2022, noise=1e-3).sigma
     np.testing.assert_allclose(np.median(estimated / known, axis=0), 1, atol=0.03)
 
 
 def test_what_a_spectrum_does_not_tell_has_the_width_of_its_range():
     dark = solved(from_coordinates(np.array([[0.9, 0.5, 0.9, 0.5, 0.5]])), VISIBLE)
-    found = fit_spectra(dark, VISIBLE, noise=0.01)
+    found = fit_spectra(dark, VISIBLE, ALIAGA2022, noise=0.01)
     assert found.sigma[0, NAMES.index("oxygenation")] == pytest.approx(12**-0.5, rel=0.02)
     assert np.isfinite(found.covariance).all()
 
@@ -127,15 +127,17 @@ def test_what_a_spectrum_does_not_tell_has_the_width_of_its_range():
 def test_held_parameters_stay_and_have_no_variance():
     spectra = solved(USUAL, VISIBLE)
     held = {"thickness": 80.0, "oxygenation": 0.6}
-    found = fit_spectra(spectra, VISIBLE, held=held)
+    found = fit_spectra(spectra, VISIBLE, ALIAGA2022, held=held)
     for name, value in held.items():
         i = NAMES.index(name)
         assert (found.values[:, i] == value).all()
         assert not found.covariance[:, i].any()
-    free = fit_spectra(spectra, VISIBLE)
+    free = fit_spectra(spectra, VISIBLE, ALIAGA2022)
     assert (found.rmse >= free.rmse - 1e-7).all()
     three = np.array([450.0, 550.0, 650.0])  # as many as there are free parameters
-    few = fit_spectra(solved(USUAL[:1], three), three, held={"thickness": 60.0, "oxygenation": 0.7})
+    few = fit_spectra(
+        solved(USUAL[:1], three), three, ALIAGA2022, held={"thickness": 60.0, "oxygenation": 0.7}
+    )
     assert np.isfinite(few.sigma).all()
     assert few.rmse.max() < 1e-4
 
@@ -144,10 +146,10 @@ def test_missing_values_do_not_count():
     spectra = solved(USUAL, VISIBLE)
     with_gaps = spectra.copy()
     with_gaps[:, ::3] = np.nan
-    found = fit_spectra(with_gaps, VISIBLE)
+    found = fit_spectra(with_gaps, VISIBLE, ALIAGA2022)
     np.testing.assert_allclose(to_coordinates(found.values), to_coordinates(USUAL), atol=0.02)
     with_gaps[1, 4:] = np.nan
-    found = fit_spectra(with_gaps, VISIBLE)
+    found = fit_spectra(with_gaps, VISIBLE, ALIAGA2022)
     assert np.isnan(found.rmse).tolist() == [False, True, False, False]
     assert np.isnan(found.values[1]).all()
     assert np.isfinite(found.values[[0, 2, 3]]).all()
@@ -155,7 +157,7 @@ def test_missing_values_do_not_count():
 
 def test_weights_move_the_fit_to_where_they_are():
     spectra = solved(USUAL[:1], VISIBLE) + 0.02 * (VISIBLE > 600)
-    fitter = SpectralFitter(VISIBLE)
+    fitter = SpectralFitter(VISIBLE, ALIAGA2022)
     blue = fitter.fit(spectra, np.where(VISIBLE < 600, 1.0, 1e-4))
     residual = fitter.reflectance(blue.values) - spectra
     assert np.abs(residual[:, VISIBLE < 600]).max() < 2e-3 < np.abs(residual).max()
@@ -184,25 +186,25 @@ def test_other_tissues_have_their_own_parameters():
     ],
 )
 def test_what_cannot_be_fitted_is_said(change, words):
-    arguments = {"wavelengths": VISIBLE, **change}
+    arguments = {"wavelengths": VISIBLE, "tissue": ALIAGA2022, **change}
     with pytest.raises(CutisError, match=words):
         SpectralFitter(**arguments)
 
 
 def test_wavelengths_that_are_too_short_are_set_right():
     spectra = solved(USUAL, VISIBLE + 2)
-    found = fit_spectra(spectra, VISIBLE, shift=2.0)
+    found = fit_spectra(spectra, VISIBLE, ALIAGA2022, shift=2.0)
     assert found.rmse.max() < 1e-4
-    assert fit_spectra(spectra, VISIBLE).rmse.min() > 5 * found.rmse.max()
-    ends = fit_spectra(np.full((1, 41), 0.3), WAVELENGTHS, shift=2.0)
+    assert fit_spectra(spectra, VISIBLE, ALIAGA2022).rmse.min() > 5 * found.rmse.max()
+    ends = fit_spectra(np.full((1, 41), 0.3), WAVELENGTHS, ALIAGA2022, shift=2.0)
     assert np.isfinite(ends.values).all()
     with pytest.raises(CutisError, match="shift"):
-        SpectralFitter(VISIBLE, shift=11.0)
+        SpectralFitter(VISIBLE, ALIAGA2022, shift=11.0)
 
 
 def test_spectra_of_another_length_are_refused():
     with pytest.raises(CutisError, match="not of shape"):
-        SpectralFitter(VISIBLE).fit(np.ones((3, 30)))
+        SpectralFitter(VISIBLE, ALIAGA2022).fit(np.ones((3, 30)))
 
 
 @pytest.mark.shared
@@ -218,7 +220,7 @@ def test_measured_skins_of_eight_groups(shared_data):
     chosen = np.concatenate(
         [rng.choice(np.flatnonzero(groups == g), 120, replace=False) for g in np.unique(groups)]
     )
-    fitter = SpectralFitter(VISIBLE, specular=0.028)
+    fitter = SpectralFitter(VISIBLE, ALIAGA2022, specular=0.028)
     found = fitter.fit(spectra[chosen])
     assert found.rmse.mean() == pytest.approx(0.0087, abs=2e-4)
 
@@ -233,7 +235,7 @@ def test_measured_skins_of_eight_groups(shared_data):
     assert better.rmse.mean() < 0.0038
     assert np.abs(bias).max() < 0.003
 
-    brute = Everywhere(VISIBLE, specular=0.028).fit(spectra[chosen[::4]])
+    brute = Everywhere(VISIBLE, ALIAGA2022, specular=0.028).fit(spectra[chosen[::4]])
     deeper = found.rmse[::4] - brute.rmse
     assert np.mean(deeper > 1e-5) < 0.01
     assert deeper.max() < 5e-4

@@ -12,7 +12,7 @@ import pytest
 
 from cutis.errors import CutisError
 from cutis.inverse.network import load_weights
-from cutis.optics import NAMES
+from cutis.optics import ALIAGA2022, NAMES
 
 torch = pytest.importorskip("torch")
 
@@ -77,7 +77,7 @@ def test_weights_are_those_that_were_measured(run):
     folder, metrics, _ = run
     networks = load_weights(folder / "weights.safetensors")
     skins = uniform(1200, SMALL.seed + 1)
-    rgb = albedo_space().rgb(skins)
+    rgb = albedo_space(ALIAGA2022).rgb(skins)
     error = np.abs(networks.decoder(to_coordinates(skins)) - rgb).mean()
     assert error == pytest.approx(metrics["validation"]["decoder_l1"], rel=1e-3)
 

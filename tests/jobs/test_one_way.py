@@ -34,6 +34,7 @@ ESTIMATE = {
     "half": ({"half": True}, ("--half",)),
     "sigma": ({"sigma": False}, ("--no-sigma",)),
     "page": ({"page": True}, ("--report",)),
+    "orientation": ({"orientation": "ignore"}, ("--orientation", "ignore")),
     "again": ({"again": True}, ("--again",)),
 }
 EDIT = {

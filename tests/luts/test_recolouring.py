@@ -9,11 +9,12 @@ from cutis.errors import CutisError
 from cutis.looks import presets
 from cutis.luts.recolouring import NONE, WHOLE, fading, recolouring, title
 from cutis.maps import estimate
+from cutis.optics import ALIAGA2022
 
 
 @pytest.fixture(scope="module")
 def skins():
-    rgb = albedo_space().rgb(halton(4000, 3))
+    rgb = albedo_space(ALIAGA2022).rgb(halton(4000, 3))
     return rgb[is_skin_colour(rgb)]
 
 

@@ -6,7 +6,7 @@ import pytest
 from cutis.albedo import albedo_space
 from cutis.colour import LINEAR, delta_e, light_conversion, reflectance_to_rgb
 from cutis.maps import estimate, load_maps
-from cutis.optics import WAVELENGTHS
+from cutis.optics import ALIAGA2022, WAVELENGTHS
 from cutis.report import report
 from cutis.textures import Texture
 
@@ -18,7 +18,7 @@ def under_a():
     """(4, 5, 3) of one skin, more and less melanin, seen under A."""
     skins = np.tile(SKIN, (4, 5, 1))
     skins[..., 0] *= np.linspace(0.8, 1.2, 20).reshape(4, 5)
-    spectra = albedo_space().reflectance(skins)
+    spectra = albedo_space(ALIAGA2022).reflectance(skins)
     return reflectance_to_rgb(spectra, WAVELENGTHS, "A").astype(np.float32)
 
 
@@ -44,7 +44,7 @@ def test_edits_come_back_under_the_light_of_the_capture(under_a):
     skin = estimate(under_a, illuminant="A", model="aliaga2022-exact")
     edited = skin.multiply(melanin=2.0)
     before, after = (
-        albedo_space().rgb(maps.parameters()) @ np.linalg.inv(light_conversion("A")).T
+        albedo_space(ALIAGA2022).rgb(maps.parameters()) @ np.linalg.inv(light_conversion("A")).T
         for maps in (skin, edited)
     )
     np.testing.assert_allclose(edited.albedo(), under_a * after / before, rtol=2e-3)

@@ -75,7 +75,7 @@ def test_there_and_back(light):
     rgb = albedo_space(MEASURED2026).rgb(skins)
     skin = skin_of(maps, model="measured2026", source=rgb)
     relit = skin.relit(light)
-    known = calibrate(np.zeros((0, 3)), light=light, tissue=MEASURED2026)
+    known = calibrate(np.zeros((0, 3)), MEASURED2026, light=light)
     back = delta_e(known.apply(relit), rgb)
     assert back.mean() < 0.8
     assert back.mean() < 0.4 * delta_e(relit, rgb).mean()

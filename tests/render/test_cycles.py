@@ -6,6 +6,7 @@ from scipy.stats import norm
 
 from cutis.albedo import albedo_space
 from cutis.errors import CutisError
+from cutis.optics import ALIAGA2022
 from cutis.render.cycles import (
     INDEX,
     METHOD,
@@ -98,11 +99,11 @@ def test_patches_of_skin_return_the_albedo_asked_for(blender, tmp_path):
     """
     melanin = (0.003, 0.01, 0.02, 0.04, 0.08, 0.15, 0.3, 0.6)
     skins = [(m, b, 100.0, 0.7, 0.75) for m in melanin for b in (0.002, 0.02, 0.08)]
-    tones = albedo_space().rgb(np.array(skins))
+    tones = albedo_space(ALIAGA2022).rgb(np.array(skins))
     pictures = []
     for number, albedo in enumerate(tones):
         colour = base_colour(albedo)
-        lengths = radius(colour, mean_free_path())
+        lengths = radius(colour, mean_free_path(ALIAGA2022))
         scene = Scene(
             mesh="patch", light="furnace", specular=0.0, denoise=False, width=40, height=40,
             samples=64, seed=number, method=METHOD, subsurface_ior=INDEX, facing=facing(),

@@ -6,6 +6,7 @@ from scipy.stats import norm
 
 from cutis.albedo import albedo_space
 from cutis.errors import CutisError
+from cutis.optics import ALIAGA2022
 from cutis.render.inversion import single_scattering_albedo
 from cutis.render.mitsuba_patch import patch_albedo
 from cutis.transport import fresnel_reflectance, half_space_albedo
@@ -33,7 +34,7 @@ def test_patches_of_skin_return_the_albedo_asked_for(g, every):
     """
     melanin = (0.003, 0.01, 0.02, 0.04, 0.08, 0.15, 0.3, 0.6)
     skins = [(m, b, 100.0, 0.7, 0.75) for m in melanin for b in (0.002, 0.02, 0.08)]
-    tones = albedo_space().rgb(np.array(skins))[::every]
+    tones = albedo_space(ALIAGA2022).rgb(np.array(skins))[::every]
     found = [
         patch_albedo(single_scattering_albedo(albedo, g), g, samples=48, seed=number)
         for number, albedo in enumerate(tones)

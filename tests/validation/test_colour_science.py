@@ -5,12 +5,12 @@ import pytest
 
 from cutis.albedo import albedo_space, uniform
 from cutis.colour import lab, reflectance_to_rgb, spectrum_to_xyz
-from cutis.optics import WAVELENGTHS
+from cutis.optics import ALIAGA2022, WAVELENGTHS
 
 
 @pytest.fixture(scope="module")
 def skins():
-    return albedo_space().reflectance(uniform(12, seed=3)).astype(float)
+    return albedo_space(ALIAGA2022).reflectance(uniform(12, seed=3)).astype(float)
 
 
 def colour_science_xyz(spectrum, light):

@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from cutis.albedo.space import AlbedoSpace, albedo_space
 from cutis.albedo.spectral_table import to_splines
 from cutis.kernels.splines import basis, chebyshev
-from cutis.optics import ALIAGA2022, TISSUES, Tissue
+from cutis.optics import TISSUES, Tissue
 from cutis.optics.parameters import BLOOD, EUMELANIN, MELANIN, OXYGENATION, PARAMETERS, THICKNESS
 
 TERMS = 16
@@ -128,7 +128,7 @@ def load_colours(file: str | IO[bytes]) -> ColourTable:
         return ColourTable(stored["upper"], stored["lower"])
 
 
-def colour_table(tissue: Tissue = ALIAGA2022) -> ColourTable:
+def colour_table(tissue: Tissue) -> ColourTable:
     """The table of `tissue`: the one that ships where there is one, else built now (seconds)."""
     return _colour_table(tissue)
 

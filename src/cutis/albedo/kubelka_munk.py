@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from cutis.colour import spectrum_to_rgb
 from cutis.errors import CutisError
-from cutis.optics import ALIAGA2022, WAVELENGTHS, Tissue
+from cutis.optics import WAVELENGTHS, Tissue
 from cutis.optics.parameters import BLOOD, EUMELANIN, MELANIN, OXYGENATION, THICKNESS
 from cutis.transport.kubelka_munk import CONVERSIONS, coefficients, half_space, layer, over
 
@@ -28,7 +28,7 @@ class KubelkaMunkSkin:
     for values outside the ranges of `optics.PARAMETERS`, and unknown names.
     """
 
-    tissue: Tissue = ALIAGA2022
+    tissue: Tissue
     conversion: str = "gate1974"
     epidermis: str = "absorbing"
     thickness: float = 200.0
@@ -64,9 +64,8 @@ class KubelkaMunkSkin:
         below = self.tissue.dermis_absorption(blood, self.oxygenation, lam)
         reduced = self.tissue.reduced_scattering(lam)
         depth = self.thickness * 1e-4  # cm
-        dermis = half_space(
-            *coefficients(below, reduced * self.tissue.dermis_scattering, self.conversion)
-        )
+        under = self.tissue.dermis_reduced_scattering(lam, self.eumelanin)
+        dermis = half_space(*coefficients(below, under, self.conversion))
         if self.epidermis == "absorbing":
             return np.asarray(np.exp(-2.0 * above * depth) * dermis)
         return over(*layer(*coefficients(above, reduced, self.conversion), depth), dermis)

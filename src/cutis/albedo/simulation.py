@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutis.errors import CutisError
-from cutis.optics import ALIAGA2022, PARAMETERS, WAVELENGTHS, Tissue, from_coordinates
+from cutis.optics import PARAMETERS, WAVELENGTHS, Tissue, from_coordinates
 from cutis.optics.absorbers import LAYERS
 from cutis.transport import walk_absorptions, walk_stacks
 from cutis.transport.monte_carlo import PHOTONS, check_photons
@@ -27,7 +27,7 @@ BATCH_PHOTONS = 20_000_000
 class Walks:
     """How skins are walked through; `tissue` says in which dimension and with which boundary."""
 
-    tissue: Tissue = ALIAGA2022
+    tissue: Tissue
     photons: int = PHOTONS
     seed: int = 0
     incidence: float | str = "lambertian"
@@ -80,11 +80,14 @@ class SkinSimulation:
         absorption = np.stack(
             [tissue.absorption(layer, values, lam) for layer in LAYERS], axis=-1
         ).reshape(-1, 2)
-        scattering = np.tile(tissue.scattering(lam), len(skins))
+        above = np.tile(tissue.scattering(lam), len(skins))
+        below = np.broadcast_to(
+            tissue.scattering_below(lam, values["eumelanin"]), (len(skins), BANDS)
+        )
         depth = np.repeat(values["thickness"] * 1e-4, BANDS)
         found = walk_stacks(
             absorption,
-            np.stack([scattering, scattering * tissue.dermis_scattering], axis=-1),
+            np.stack([above, below.ravel()], axis=-1),
             np.tile(tissue.anisotropy(lam), len(skins))[:, None],
             np.stack([depth, np.full(len(depth), np.inf)], axis=-1),
             photons=self.walks.photons,
@@ -118,7 +121,9 @@ class TensorSimulation:
 
     def __post_init__(self) -> None:
         grid_axes(self.shape)
-        if self.walks.tissue.boundary != "matched" or self.walks.tissue.dermis_scattering != 1:
+        tissue = self.walks.tissue
+        one = tissue.dermis_scattering == 1 and not tissue.dermis_by_type
+        if tissue.boundary != "matched" or not one:
             raise CutisError("a tensor is simulated with the matched boundary only")
 
     @property

@@ -12,7 +12,6 @@ from cutis.albedo.spectral_table import CELLS, SpectralTable, spectral_table
 from cutis.colour import LightLike, spectrum_to_rgb
 from cutis.errors import CutisError
 from cutis.optics import (
-    ALIAGA2022,
     NAMES,
     WAVELENGTHS,
     Parameter,
@@ -161,7 +160,7 @@ def _bands(count: int) -> Iterator[slice]:
     return (slice(start, start + BAND) for start in range(0, count, BAND))
 
 
-def albedo_space(tissue: Tissue = ALIAGA2022) -> AlbedoSpace:
+def albedo_space(tissue: Tissue) -> AlbedoSpace:
     """The albedo space of `tissue`, made once per process."""
     return _albedo_space(tissue)
 

@@ -29,8 +29,8 @@ ModelName = Annotated[
     str,
     typer.Option(
         "--model",
-        help="default, measured2026, aliaga2022-exact, aliaga2022, kubelka-munk, one that another "
-        "package brings, or a .safetensors file of weights.",
+        help="default, measured2026, measured2026b, aliaga2022-exact, aliaga2022, kubelka-munk, "
+        "one that another package brings, or a .safetensors file of weights.",
     ),
 ]
 Method = Annotated[
@@ -47,7 +47,9 @@ Illuminant = Annotated[
 ]
 TissueName = Annotated[
     str,
-    typer.Option("--tissue", help="measured2026, fitted to measured skin, or aliaga2022."),
+    typer.Option(
+        "--tissue", help="measured2026b or measured2026, fitted to measured skin, or aliaga2022."
+    ),
 ]
 Amount = Annotated[float, typer.Option("--amount", help="Share of the edit to apply, 0 to 1.")]
 Skins = Annotated[
@@ -96,6 +98,21 @@ class Turn(StrEnum):
     IGNORE = "ignore"
 
 
+class Switch(StrEnum):
+    """On or off."""
+
+    ON = "on"
+    OFF = "off"
+
+
+Steadiness = Annotated[
+    Switch,
+    typer.Option(
+        "--steady",
+        help="on smooths thickness, melanin type and oxygenation as far as colours allow; off "
+        "finds every texel by itself.",
+    ),
+]
 Turning = Annotated[
     Turn,
     typer.Option(

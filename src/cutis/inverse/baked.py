@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cutis.albedo import AlbedoSpace, albedo_space
+from cutis.albedo import AlbedoSpace
 from cutis.inverse.fit import fit
 from cutis.inverse.network import Perceptron
 from cutis.inverse.prior import SkinPrior
@@ -99,13 +99,12 @@ class Baked:
         return np.ascontiguousarray(np.pad(self.coefficients, padding))
 
 
-def exact_inverse(encoder: Perceptron) -> Solver:
+def exact_inverse(encoder: Perceptron, space: AlbedoSpace) -> Solver:
     """What `encoder` estimates, moved by a fit to the nearest skin that has exactly that colour.
 
     An encoder trained on skins spread evenly over the albedo space estimates the mean of all skins
     of a colour.
     """
-    space = albedo_space()
     return lambda colours: fit(space, colours, encoder(colours), np.diag(PRECISION), TOLERANCE)
 
 

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from cutis.albedo import AlbedoSpace, albedo_space
 from cutis.errors import CutisError
-from cutis.optics import ALIAGA2022, Tissue, axes
+from cutis.optics import Tissue, axes
 
 CENTRE, TOLERANCE = 0.4, 0.001
 """Prior of `explain`: where every coordinate is expected, and so loosely that colours decide."""
@@ -68,7 +68,7 @@ def fit(
 
 def explain(
     rgb: ArrayLike,
-    tissue: Tissue = ALIAGA2022,
+    tissue: Tissue,
     *,
     centre: float = CENTRE,
     tolerance: float = TOLERANCE,

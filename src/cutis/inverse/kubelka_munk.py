@@ -83,6 +83,6 @@ class KubelkaMunkInverse:
 
 
 @lru_cache(maxsize=4)
-def kubelka_munk_inverse(skin: KubelkaMunkSkin | None = None) -> KubelkaMunkInverse:
-    """The inverse of `skin` (the default one), its table made once per process."""
-    return KubelkaMunkInverse(skin or KubelkaMunkSkin())
+def kubelka_munk_inverse(skin: KubelkaMunkSkin) -> KubelkaMunkInverse:
+    """The inverse of `skin`, its table made once per process."""
+    return KubelkaMunkInverse(skin)

@@ -17,7 +17,7 @@ from cutis.albedo import AlbedoSpace, albedo_space, grid_skins
 from cutis.colour import reflectance_to_rgb
 from cutis.errors import CutisError
 from cutis.kernels.nearest import NearestColour, finite_colours
-from cutis.optics import PARAMETERS, WAVELENGTHS, to_coordinates
+from cutis.optics import ALIAGA2022, PARAMETERS, WAVELENGTHS, to_coordinates
 
 SHAPES = {"lookup": (64, 32, 5, 5, 5), "lookup-55k": (64, 32, 3, 3, 3)}
 """The two tensors of the paper, melanin, blood, thickness, eumelanin and oxygenation."""
@@ -68,12 +68,12 @@ class LookupTensor:
         return self.colours[np.ravel_multi_index(tuple(node.T), self.shape)]
 
 
-def build_tensor(shape: Sequence[int], space: AlbedoSpace | None = None) -> LookupTensor:
+def build_tensor(shape: Sequence[int], space: AlbedoSpace) -> LookupTensor:
     """The tensor of that shape, its colours from the exact albedo space (a second).
 
     Raises CutisError unless the shape is five whole numbers above zero.
     """
-    colours = (space or albedo_space()).rgb(_nodes(shape))
+    colours = space.rgb(_nodes(shape))
     return LookupTensor(tuple(int(n) for n in shape), colours)
 
 
@@ -90,7 +90,7 @@ def tensor_of_spectra(shape: Sequence[int], reflectance: ArrayLike) -> LookupTen
 @lru_cache(maxsize=2)
 def lookup_tensor(name: str = "lookup") -> LookupTensor:
     """One of the paper's two tensors by name, built once per process."""
-    return build_tensor(SHAPES[name])
+    return build_tensor(SHAPES[name], albedo_space(ALIAGA2022))
 
 
 def _nodes(shape: Sequence[int]) -> NDArray[np.float64]:

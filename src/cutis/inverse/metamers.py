@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cutis.albedo import AlbedoSpace, albedo_space
+from cutis.albedo import AlbedoSpace
 from cutis.colour import delta_e, reflectance_to_rgb
 from cutis.errors import CutisError
 from cutis.optics import PARAMETERS, WAVELENGTHS, from_coordinates
@@ -43,7 +43,7 @@ def metamers(
     tolerance: float = 1.0,
     count: int = 1000,
     *,
-    space: AlbedoSpace | None = None,
+    space: AlbedoSpace,
     seed: int = 0,
     most: int = 1 << 25,
 ) -> Family:
@@ -58,14 +58,13 @@ def metamers(
         raise CutisError("a colour must be three finite numbers, linear sRGB")
     if not (tolerance > 0 and count > 0):
         raise CutisError("tolerance and count of metamers must be above zero")
-    forward = space or albedo_space()
-    if forward.tissue.parameters != PARAMETERS:
+    if space.tissue.parameters != PARAMETERS:
         raise CutisError(
-            f"metamers are of tissues with the five free parameters, not {forward.tissue.name}"
+            f"metamers are of tissues with the five free parameters, not {space.tissue.name}"
         )
     rng = np.random.default_rng(seed)
     scouts = rng.random((SCOUTS, 5))
-    near = scouts[_distance(forward, scouts, target) < WIDER * tolerance]
+    near = scouts[_distance(space, scouts, target) < WIDER * tolerance]
     if not len(near):
         raise CutisError("no skin has that colour within the tolerance; is it in the gamut?")
     size = near.max(axis=0) - near.min(axis=0)
@@ -75,7 +74,7 @@ def metamers(
     found = tried = 0
     while found < count and tried < most:
         tries = low + (high - low) * rng.random((ROUND, 5))
-        members = tries[_distance(forward, tries, target) < tolerance]
+        members = tries[_distance(space, tries, target) < tolerance]
         kept.append(members)
         found, tried = found + len(members), tried + ROUND
     if not found:
@@ -85,10 +84,10 @@ def metamers(
 
 
 def colours_under(
-    skins: ArrayLike, lights: Sequence[str], space: AlbedoSpace | None = None
+    skins: ArrayLike, lights: Sequence[str], space: AlbedoSpace
 ) -> dict[str, NDArray[np.float64]]:
     """(n, 3) linear sRGB of (n, 5) skins under each light, white-balanced to it."""
-    spectra = (space or albedo_space()).reflectance(skins)
+    spectra = space.reflectance(skins)
     return {light: reflectance_to_rgb(spectra, WAVELENGTHS, light) for light in lights}
 
 

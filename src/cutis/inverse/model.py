@@ -9,7 +9,7 @@ model than that.
 import hashlib
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Protocol, TypeAlias
 
 import numpy as np
@@ -83,8 +83,9 @@ class Model:
     seen, in network coordinates. `digest` stands for all that results depend on: tables, weights,
     constants (`content_digest`).
 
-    A model that looks at neighbours has `of_tile`, which looks `reach` texels far, and may have
-    `survey`, which makes a survey of what will be estimated. `recipe` is what another process finds
+    A model that looks at neighbours has `of_tile`, which looks `reach` texels far in tiles that
+    begin at a multiple of `grid` rows, and may have `survey`, which makes a survey of what will be
+    estimated. `recipe` is what another process finds
     the model by: a name of the registry or the whole path of a file, and the device.
     """
 
@@ -96,6 +97,7 @@ class Model:
     prior_sigma: tuple[float, ...] | None = None
     digest: str = ""
     reach: int = 0
+    grid: int = 1
     of_tile: TileEstimate | None = None
     survey: Callable[[], ModelSurvey] | None = None
     recipe: tuple[str, str] | None = None
@@ -116,6 +118,13 @@ class Model:
 
     def __repr__(self) -> str:
         return f"<cutis model {self.name}, tissue {self.tissue.name}, {self.digest[:12]}>"
+
+    @property
+    def alone(self) -> "Model":
+        """The same without neighbours: every texel by itself."""
+        if self.of_tile is None:
+            return self
+        return replace(self, reach=0, grid=1, of_tile=None, survey=None)
 
     def encode(self, rgb: ArrayLike) -> Map:
         """(..., 3) calibrated linear sRGB → (..., 5) parameters in their units.
@@ -148,6 +157,9 @@ class Model:
         self, colours: Map, cover: Map, state: State | None = None, *, sigma: bool = True
     ) -> Found:
         """Maps of a tile: (h, W, 3) calibrated linear sRGB where `cover` (h, W) is not 0.
+
+        `state` is what the survey found, and under "rounding" the step that encoded colours of the
+        capture are rounded to, 1/255 for instance; without it they are not.
 
         Rows within `reach` of an edge of the tile that is no edge of the texture are not yet what
         they are inside: whoever cuts tiles gives so many more rows and leaves them out afterwards.

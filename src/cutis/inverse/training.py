@@ -24,7 +24,7 @@ from safetensors.torch import load_file, save
 from cutis.albedo import albedo_space, halton, uniform
 from cutis.errors import CutisError
 from cutis.inverse.network import layer_sizes
-from cutis.optics import NAMES, to_coordinates
+from cutis.optics import ALIAGA2022, NAMES, to_coordinates
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ def _forward(layers: torch.nn.ModuleList, x: torch.Tensor) -> torch.Tensor:
 def dataset(recipe: Recipe) -> tuple[tuple[torch.Tensor, torch.Tensor], ...]:
     """Training and validation pairs, each (n, 5) coordinates and (n, 3) linear sRGB."""
     training = round(recipe.pairs * recipe.training_share)
-    space = albedo_space()
+    space = albedo_space(ALIAGA2022)
     sets = []
     for skins in (
         halton(training, recipe.seed),

@@ -239,7 +239,7 @@ class MaterialJob:
         g = scene.anisotropy
         with made_folder(self.folder), subject.opened() as (skin, changes):
             sweep(self.folder)
-            red, green, blue = (float(length) for length in mean_free_path(g, skin.tissue))
+            red, green, blue = (float(length) for length in mean_free_path(skin.tissue, g))
             everywhere = subject.radius == "tissue"
             files = export_material(
                 skin, self.folder, skin.stem,
@@ -273,7 +273,7 @@ class _Feeds:
     def _write(self, changes: tuple[Change, ...]) -> tuple[Path, Path]:
         number, subject = len(self._written), self._subject
         g = subject.scene.anisotropy
-        everywhere = mean_free_path(tissue=self._skin.tissue)
+        everywhere = mean_free_path(self._skin.tissue)
         if subject.radius == "maps" and self._skin.maps is None:
             raise CutisError(
                 f"{subject.skin.name} is a texture; --radius maps needs its maps (NAME{MAPS}), "
@@ -321,7 +321,7 @@ def _recipe(subject: Subject, skin: Skin, blender: Blender) -> dict[str, Any]:
         },
         "scene": job,
         "files": digests,
-        "medium": [METHOD, INDEX, *facing(g), *mean_free_path(g, skin.tissue).tolist()],
+        "medium": [METHOD, INDEX, *facing(g), *mean_free_path(skin.tissue, g).tolist()],
         "first_turn": scene.turn,
     }
 

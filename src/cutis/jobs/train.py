@@ -23,7 +23,7 @@ from cutis.jobs.job import digest_of
 from cutis.maps.estimating import Progress, nobody
 from cutis.textures import replacing
 
-BAKED = (shipped.MEASURED, shipped.EXACT)
+BAKED = tuple(shipped.TISSUE_OF)
 """Recipes that bake a table instead of training networks."""
 
 
@@ -77,9 +77,10 @@ def _bake(recipe: str, folder: Path, progress: Progress) -> list[Path]:
     """Writes the tables of a baked model; returns their names."""
     jobs: dict[str, tuple[Callable[..., Any], Any]]
     if recipe == shipped.EXACT:
-        jobs = {recipe: (exact_inverse(shipped.shipped_encoder()), ALIAGA_CHART)}
+        space = albedo_space(shipped.TISSUE_OF[recipe])
+        jobs = {recipe: (exact_inverse(shipped.shipped_encoder(), space), ALIAGA_CHART)}
     else:
-        space, prior = albedo_space(shipped.TISSUE_OF[recipe]), shipped.shipped_prior()
+        space, prior = albedo_space(shipped.TISSUE_OF[recipe]), shipped.shipped_prior(recipe)
         jobs = {
             recipe: (probable_skins(prior, space), MEASURED_CHART),
             f"{recipe}-trust": (trust_of(prior, space), TRUST_CHART),

@@ -24,7 +24,7 @@ from cutis.errors import CutisError
 from cutis.inverse.calibration import Calibration
 from cutis.luts.cube_lut import LARGEST, Space, is_linear
 from cutis.luts.recolouring import Recolouring
-from cutis.optics import ALIAGA2022, Tissue
+from cutis.optics import Tissue
 
 OFFSET = 0.002
 """Linear value added before the logarithm, so that black has one."""
@@ -73,8 +73,8 @@ def skin_lut(
     edit: Recolouring,
     size: int,
     space: Space,
+    tissue: Tissue,
     calibration: Calibration | None = None,
-    tissue: Tissue = ALIAGA2022,
 ) -> SkinLut:
     """The chain of an edit (`recolouring`) for albedos stored in `space`, values from 0 to 4.
 

@@ -44,7 +44,7 @@ def export_lut(
         plain = edit_lut(edit, size, space)
         lut_files.write_cube(path, plain.table, plain.shaper, text)
         return text
-    lut = skin_lut(edit, size, space, calibration, load_model(model).tissue)
+    lut = skin_lut(edit, size, space, load_model(model).tissue, calibration)
     undone = np.linalg.inv(lut.matrix)
     operators = [
         lut_files.logarithm(OFFSET),
