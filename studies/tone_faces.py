@@ -28,7 +28,7 @@ FACES = {
     },
 }  # fmt: skip
 """Files of the larger data and masks; `makehuman_old_dark_female` is painted grey, no skin."""
-THREE = ("capture", "middleage dark male", "young dark male")
+THREE = ("capture", "old light male2", "painted, dark")
 """A light, a brown and a dark face."""
 
 
