@@ -6,11 +6,13 @@ from functools import cache
 from pathlib import Path
 
 from cutis.errors import CutisError
-from cutis.looks.edits import EditPart, Multiply, Offset, Set
+from cutis.looks.edits import Multiply, Offset, Set
+from cutis.looks.effect import EditPart
 from cutis.looks.layer import Layer
 from cutis.looks.masks import MaskPart
 from cutis.looks.pictures import PicturePart
 from cutis.looks.shipped import document, names
+from cutis.looks.tone import LENGTH, Tone
 
 SAVE = "save the look and give --look"
 
@@ -70,6 +72,8 @@ def _flag(edit: EditPart) -> tuple[str, str]:
     if isinstance(edit, Multiply | Offset | Set) and edit.areas == "all":
         value = {Multiply: "x{!r}", Offset: "{:+}", Set: "{!r}"}[type(edit)]
         return f"--{edit.map}", value.format(edit.to if isinstance(edit, Set) else edit.by)
+    if isinstance(edit, Tone) and edit.like is None and edit.length == LENGTH:
+        return "--tone", str(edit).removeprefix("tone ")
     raise CutisError(f"no flag says {edit}; {SAVE}")
 
 
