@@ -47,9 +47,11 @@ def main() -> None:
 
 
 def _shoot(browser: Any, folder: Path, name: str) -> None:
-    white = ["--white", "auto"] if name == "light" else []
+    more = ["--mask", str(HEADS / "makehuman_head_mask.png")]
+    if name == "light":
+        more = ["--white", "auto"]
     process = subprocess.Popen(
-        [sys.executable, "-c", PROGRAM, "studio", f"{name}.jpg", "--no-browser", *white],
+        [sys.executable, "-c", PROGRAM, "studio", f"{name}.jpg", "--no-browser", *more],
         cwd=folder, stdout=subprocess.PIPE, text=True,
     )  # fmt: skip
     assert process.stdout is not None
