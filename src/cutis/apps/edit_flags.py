@@ -39,6 +39,10 @@ class Changes:
         """Whether there is anything to do."""
         return bool(self.typed)
 
+    def each(self) -> "tuple[Look, ...]":
+        """What was typed, one look for each flag."""
+        return tuple(Changes((one,), self.allow_outside).look() for one in self.typed)
+
     def look(self) -> "Look":
         """All of it as one look."""
         from cutis.looks import Look

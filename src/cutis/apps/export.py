@@ -14,8 +14,13 @@ def export(
     output: Annotated[
         Path,
         typer.Argument(
+<<<<<<< HEAD
             help="An edit as NAME.cube or NAME.clf; a model as decoder.onnx, decoder.glsl or "
             "encoder.onnx."
+=======
+            help="An edit as NAME.cube or NAME.clf; the networks as decoder.onnx, encoder.onnx or "
+            "decoder.glsl; with --delta a folder."
+>>>>>>> looks
         ),
     ],
     changes: Changes,
@@ -37,6 +42,11 @@ def export(
         str | None,
         typer.Option(help="As in estimate; encoder.onnx needs one of networks: aliaga2022."),
     ] = None,
+    delta: Annotated[
+        bool,
+        typer.Option("--delta", help="What each look does to the albedo of --maps, as textures."),
+    ] = False,
+    source: options.Source = None,
     quiet: options.Quiet = False,
 ) -> None:
     """Write an edit as a LUT, or a model as ONNX or GLSL, for other programs.
@@ -45,10 +55,26 @@ def export(
     Colours far from skin pass through.
 
     Example: cutis export tan.clf --preset tanning --colorspace ACEScg --maps out/face.skin.exr
+
+    Example: cutis export deltas --delta --preset flushing --look a.look.json --maps face.skin.exr
     """
     from cutis.apps.console import bar, out
     from cutis.colour import SRGB
+    from cutis.errors import CutisError
+    from cutis.jobs.delta import DeltaJob
     from cutis.jobs.export import ExportJob
+
+    if delta:
+        if maps is None:
+            raise CutisError("--delta is of a face: give its maps with --maps NAME.skin.exr")
+        work = DeltaJob(maps, output, tuple(one.within(amount) for one in changes.each()), source)
+        with bar(quiet) as progress:
+            files = work.run(progress)
+        if not quiet:
+            out.say(f"wrote {', '.join(file.name for file in files)} into {output}")
+        return
+    if source is not None:
+        raise CutisError("--source is of --delta; a LUT needs no capture")
 
     job = ExportJob(
         output, changes.look(), amount, size,
