@@ -14,13 +14,8 @@ def export(
     output: Annotated[
         Path,
         typer.Argument(
-<<<<<<< HEAD
             help="An edit as NAME.cube or NAME.clf; a model as decoder.onnx, decoder.glsl or "
-            "encoder.onnx."
-=======
-            help="An edit as NAME.cube or NAME.clf; the networks as decoder.onnx, encoder.onnx or "
-            "decoder.glsl; with --delta a folder."
->>>>>>> looks
+            "encoder.onnx; with --delta a folder."
         ),
     ],
     changes: Changes,
