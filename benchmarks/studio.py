@@ -6,6 +6,7 @@ a JPEG, drawing it) is not in it. Also resident memory, after the first face and
 closing others in turn. Says the load of the machine beside the times.
 """
 
+import contextlib
 import json
 import os
 import statistics
@@ -45,15 +46,15 @@ def face(path: Path, side: int) -> None:
 class Page:
     """A page without a browser."""
 
-    def __init__(self, address: str) -> None:
+    def __init__(self, address: str, stack: contextlib.ExitStack) -> None:
         from websockets.sync.client import connect
 
         site, token = address.strip().split("/?token=")
         host = site.removeprefix("http://")
         cookie = f"cutis-{host.rpartition(':')[2]}={token}"
-        self.link = connect(
+        self.link = stack.enter_context(connect(
             f"ws://{host}/ws", origin=site, additional_headers={"Cookie": cookie}, max_size=1 << 28
-        )
+        ))  # fmt: skip
 
     def ask(self, kind: str, **message: Any) -> Any:
         """Sends a message and waits for an answer of a kind."""
@@ -97,7 +98,8 @@ def main() -> None:
         )  # fmt: skip
         assert process.stdout is not None
         try:
-            measure(Page(process.stdout.readline()), side, process.pid)
+            with contextlib.ExitStack() as stack:
+                measure(Page(process.stdout.readline(), stack), side, process.pid)
         finally:
             process.terminate()
             process.wait()

@@ -1,6 +1,6 @@
 """Screenshots of the studio for docs/studio.md: light, brown and dark faces, its main states.
 
-    python -m studies.studio_pictures
+    python -m studies.studio_pictures [light] [brown] [dark]
 
 Needs a Chromium on the path and `cutis[browser,studio]`. Shows the bundled capture and albedos of
 the bundled heads. Writes docs/studio/*.jpg.
@@ -25,6 +25,10 @@ FACES = {
     "brown": HEADS / "makehuman_african_middleage_mindfront.jpg",
     "dark": HEADS / "makehuman_young_dark_male.jpg",
 }
+SECONDS = 8
+"""What a picture, a reading or tracks may take on a busy machine."""
+SETTLED = """() => document.body.dataset.drawn === document.body.dataset.revision
+  && document.querySelector("#slider-melanin").style.getPropertyValue("--track")"""
 PROGRAM = "from cutis.apps.main import main; main()"
 
 
@@ -37,15 +41,17 @@ def main() -> None:
         for name, path in FACES.items():
             shutil.copy(path, Path(folder) / f"{name}.jpg")
         browser = play.chromium.launch(executable_path=chromium, args=list(FLAGS))
-        for name in FACES:
+        for name in sys.argv[1:] or FACES:
             _shoot(browser, Path(folder), name)
         browser.close()
 
 
 def _shoot(browser: Any, folder: Path, name: str) -> None:
-    white = ["--white", "auto"] if name == "light" else []
+    more = ["--mask", str(HEADS / "makehuman_head_mask.png")]
+    if name == "light":
+        more = ["--white", "auto"]
     process = subprocess.Popen(
-        [sys.executable, "-c", PROGRAM, "studio", f"{name}.jpg", "--no-browser", *white],
+        [sys.executable, "-c", PROGRAM, "studio", f"{name}.jpg", "--no-browser", *more],
         cwd=folder, stdout=subprocess.PIPE, text=True,
     )  # fmt: skip
     assert process.stdout is not None
@@ -55,7 +61,8 @@ def _shoot(browser: Any, folder: Path, name: str) -> None:
         page.goto(address)
         page.wait_for_selector("body[data-ready]", timeout=600_000)
         {"light": _sliders, "brown": _brush, "dark": _split}[name](page)
-        page.wait_for_timeout(2500)
+        page.wait_for_function(SETTLED, timeout=120_000)
+        page.wait_for_timeout(SECONDS * 1000)
         page.screenshot(path=OUTPUT / f"{name}.jpg", quality=88, type="jpeg")
         if name == "light":
             page.locator(".kind").select_option("map:melanin")

@@ -78,6 +78,7 @@ class Studio:
             task = self._estimates.get(number)
             if task is not None:
                 await asyncio.wait([task])
+                task.exception()  # it is known: the face goes
         loop = asyncio.get_running_loop()
         await loop.run_in_executor(self._draws, workshop.close)
 
