@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from cutis.arrays import Map
+from cutis.checks import examine, gather
 from cutis.colour import LINEAR, Light, Space, light
 from cutis.errors import CutisError
 from cutis.inverse import Model
@@ -30,6 +31,7 @@ from cutis.maps.source import source_note
 from cutis.maps.writing import maps_writer
 from cutis.optics import NAMES
 from cutis.report import Regions, RunningReport
+from cutis.report.numbers import Doubt
 from cutis.report.page import write_report
 from cutis.report.previews import Previews
 from cutis.textures import (
@@ -187,6 +189,7 @@ class EstimateJob:
         stem = self.stem(capture)
         with contextlib.ExitStack() as stack:
             opened = stack.enter_context(self._opened(capture))
+            doubts = self._doubts(opened)
             run = _Run(self, known, opened, stem, stack)
             regions = None
             if capture.regions is not None:
@@ -203,6 +206,7 @@ class EstimateJob:
             colorspace=f"{texture.space.name} ({texture.origin})",
             regions=numbers,
             notes=(*notes, *([] if regions is None else regions.notes)),
+            doubts=doubts,
         )
         total = opened.shape[0] * opened.shape[1]
         progress(total, total, "drawing previews")
@@ -216,6 +220,17 @@ class EstimateJob:
         with replacing(self.report_file(capture)) as path:
             path.write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
         return Estimated(capture.face, report, pictures=pictures)
+
+    def _doubts(self, opened: FileCapture) -> tuple[Doubt, ...]:
+        """Why the capture may be no albedo of skin; what was asked to be searched for is none."""
+        searched = {"cast", "exposure"} if self.white == "auto" else set[str]()
+        searched |= {"exposure"} if self.exposure == "auto" else set()
+        gathered = gather(opened.texture, opened.mask)
+        return tuple(
+            Doubt(one.kind, one.sentence, one.hint)
+            for one in examine(gathered).findings
+            if one.level == "finding" and one.kind not in searched
+        ) if gathered.tallies.inside else ()  # fmt: skip
 
 
 ENDS = (

@@ -79,10 +79,14 @@ class FileCapture:
     def rows(self, rows: slice) -> tuple[Map, Map]:
         """Colours and cover of some rows."""
         part = self.texture.rows(rows)
+        return part.linear(), self.cover(part, rows)
+
+    def cover(self, part: Texture, rows: slice) -> Map:
+        """Cover (h, W) of some rows that were read."""
         least = 0.0 if self.mask is None else MaskFile.BLACK
         cover = cover_of_alpha(part) if self.mask is None else self.mask.rows(rows)
         self.seen = self.seen or bool((cover > least).any())
-        return part.linear(), cover
+        return cover
 
     def empty(self) -> CutisError:
         """What to raise when no skin was met."""
