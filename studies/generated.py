@@ -70,6 +70,7 @@ MAKERS = {
     "studies.monte_carlo_accuracy": ["docs/transport.md#walks"],
     "studies.readme_picture": ["docs/images/face.jpg"],
     "studies.render_grid": ["docs/renders/*.jpg", "docs/render.md#*"],
+    "studies.steady_picture": ["docs/images/steady.jpg"],
     "studies.steady_accuracy": ["docs/models.md#steady_*"],
     "studies.transport_convergence": [
         "docs/transport.md#convergence", "docs/transport.md#published",
