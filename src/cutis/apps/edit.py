@@ -19,7 +19,17 @@ def edit(
     maps: Annotated[Path, typer.Argument(help="Maps that estimate wrote, NAME.skin.exr.")],
     output: Annotated[Path, typer.Option("--output", "-o", help="Edited albedo to write.")],
     changes: Changes,
-    amount: options.Amount = 1.0,
+    amount: Annotated[
+        str,
+        typer.Option(
+            "--amount",
+            help="Share of the edit to apply, 0 to 1; 0..1 writes --frames pictures of it growing.",
+        ),
+    ] = "1",
+    frames: Annotated[
+        int | None,
+        typer.Option("--frames", help="Pictures of a range of amounts: NAME.0001.EXT, …; 24."),
+    ] = None,
     mask: options.Mask = None,
     source: options.Source = None,
     illuminant: Annotated[
@@ -54,31 +64,36 @@ def edit(
 ) -> None:
     """Edit skin maps and write the albedo with the edit in it.
 
-    Presets, looks and parameter flags apply in the order typed; --amount and --mask hold for all of
-    them. Texels that the edit does not change come back bit for bit. Of a UDIM set, give MAPS, the
-    output and --mask as NAME.<UDIM>.EXT.
+    Presets, looks, tones and parameter flags apply in the order typed; --amount and --mask hold for
+    all of them. Texels that the edit does not change come back bit for bit. Of a UDIM set, give
+    MAPS, the output and --mask as NAME.<UDIM>.EXT.
 
     Example: cutis edit out/face.skin.exr --melanin x1.4 --blood x0.5 -o tanned.png
 
     Example: cutis edit out/face.skin.exr --look burn.look.json --melanin x1.2 -o burnt.png
 
+    Example: cutis edit out/face.skin.exr --tone monk:7 -o another.png
+
     Example: cutis edit out/face.skin.exr --illuminant A -o bulb.png
+
+    Example: cutis edit out/face.skin.exr --preset flushing --amount 0..1 --frames 24 -o flush.png
     """
     from cutis.apps.console import bar, out
     from cutis.errors import CutisError
     from cutis.jobs.edit import EditJob
+    from cutis.jobs.edit_frames import EditFramesJob, amounts_of
     from cutis.maps.lost import given_calibration
     from cutis.report.words import percent
 
     named = model is not None or calibration is not None
     if not (changes or illuminant or (named and save_maps)) and not edited_before(maps):
         raise CutisError(
-            "there is nothing to do: give --preset tanning, --look NAME.look.json, a parameter "
-            "flag such as --melanin x1.4, or --illuminant A"
+            "there is nothing to do: give --preset tanning, --look NAME.look.json, --tone ita:-20, "
+            "a parameter flag such as --melanin x1.4, or --illuminant A"
         )
-    look = changes.look()
+    look, amounts = changes.look(), amounts_of(amount, frames)
     job = EditJob(
-        maps, output, look, amount, mask, source,
+        maps, output, look, amounts[0], mask, source,
         light=None if illuminant is None else options.light_of(illuminant),
         model=None if method is None and model is None else options.model_of(
             model or "default", method
@@ -89,10 +104,20 @@ def edit(
         space=options.space_of(output_colorspace, ocio),
         save_maps=save_maps,
     )  # fmt: skip
+    if save_look is not None and len(amounts) > 1:
+        raise CutisError("a look has one amount: give --save-look without a range of amounts")
+    if len(amounts) > 1:
+        sequence = EditFramesJob(job, amounts)
+        with bar(quiet) as progress:
+            pictures = sequence.run(progress)
+        if not quiet:
+            film = "" if pictures.film is None else f" and {pictures.film}"
+            out.say(f"wrote {len(pictures.pictures)} pictures{film}")
+        return
     with bar(quiet) as progress:
         found = job.run(progress)
     if save_look is not None:
-        write_look(look, save_look, amount, mask, job)
+        write_look(look, save_look, amounts[0], mask, job)
     for one in () if quiet else found:
         for note in one.notes:
             out.say(note)

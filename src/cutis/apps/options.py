@@ -101,6 +101,21 @@ class Turn(StrEnum):
     IGNORE = "ignore"
 
 
+class Switch(StrEnum):
+    """On or off."""
+
+    ON = "on"
+    OFF = "off"
+
+
+Steadiness = Annotated[
+    Switch,
+    typer.Option(
+        "--steady",
+        help="on smooths melanin type and oxygenation as far as colours allow, at the cost of "
+        "thickness; off finds every texel by itself.",
+    ),
+]
 Turning = Annotated[
     Turn,
     typer.Option(

@@ -34,6 +34,7 @@ TABLES = resources.files("cutis.data").joinpath("albedo")
 
 def _baked(name: str) -> Model:
     from cutis.inverse.baked import Baked, load_baked
+    from cutis.inverse.steady import STEADINESS, steadied
     from cutis.inverse.trust import look_up_trust
 
     def table(stem: str) -> Baked:
@@ -47,12 +48,13 @@ def _baked(name: str) -> Model:
     trust = table(f"{name}-trust")
     before = tuple(float(s) for s in shipped_prior(name).prior_sigma)
     files = (f"{name}.npz", f"{name}-trust.npz", f"{name}-prior.npz")
-    return Model(
+    model = Model(
         name, inverse.skins, decode, tissue,
         to_trust=lambda rgb: look_up_trust(trust, rgb),
         prior_sigma=before,
-        digest=_digest(tissue, *files),
+        digest=content_digest(_digest(tissue, *files), list(STEADINESS)),
     )  # fmt: skip
+    return steadied(model, inverse)
 
 
 def _tensor(name: str) -> Model:

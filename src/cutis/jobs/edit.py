@@ -12,6 +12,7 @@ from cutis.errors import CutisError
 from cutis.inverse import Calibration, Model
 from cutis.jobs.files import check_outputs
 from cutis.jobs.job import digest_of
+from cutis.kernels.behind import Behind
 from cutis.looks import asked
 from cutis.maps import (
     Change,
@@ -137,16 +138,17 @@ class EditJob:
         height, width = maps.shape
         inside, changed = 0, 0
         clamped: Any = 0
-        for rows in texture.bands():
-            skin = maps.edited(rows, changes, trust=False)
-            part = texture.rows(rows)
-            which, colours = look(skin, part.linear())
-            result = part.with_linear(colours, which)
-            writer.write(result)
-            inside += int(np.count_nonzero(skin.mask))
-            changed += int(np.count_nonzero((result.pixels != part.pixels).any(axis=-1)))
-            clamped = clamped + np.array(skin.clamped, dtype=np.int64)
-            progress(min(rows.stop, height) * width, height * width, "editing")
+        with Behind() as behind:
+            for rows in texture.bands():
+                skin = maps.edited(rows, changes, trust=False)
+                part = texture.rows(rows)
+                which, colours = look(skin, part.linear())
+                result = part.with_linear(colours, which)
+                behind.call(writer.write, result)
+                inside += int(np.count_nonzero(skin.mask))
+                changed += int(np.count_nonzero((result.pixels != part.pixels).any(axis=-1)))
+                clamped = clamped + np.array(skin.clamped, dtype=np.int64)
+                progress(min(rows.stop, height) * width, height * width, "editing")
         if not inside:
             raise maps.no_mask()
         told = tuple(int(count) for count in clamped[len(maps.header.edits) :])
@@ -171,6 +173,7 @@ class EditJob:
         )  # fmt: skip
         height, width = maps.shape
         put = stack.enter_context(maps_writer(self.save_maps, header, maps.shape))
-        for rows in maps.bands():
-            put(maps.edited(rows, changes))
-            progress(min(rows.stop, height) * width, height * width, "writing maps")
+        with Behind() as behind:
+            for rows in maps.bands():
+                behind.call(put, maps.edited(rows, changes))
+                progress(min(rows.stop, height) * width, height * width, "writing maps")

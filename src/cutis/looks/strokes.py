@@ -19,7 +19,7 @@ from cutis.looks.document import Part, Share
 from cutis.looks.folder import Folder
 from cutis.looks.masks import Cover, MaskPart
 from cutis.maps import Face, Tile
-from cutis.textures.udim import FIRST
+from cutis.textures.udim import FIRST, LAST
 
 EDGE = 1.25
 """Texels over which a hard edge fades: about what a square texel averages over."""
@@ -47,7 +47,7 @@ class Stroke(Part):
     )
     opacity: Share = 1.0
     erase: bool = Field(default=False, description="Takes away from the strokes before it.")
-    tile: Annotated[int, Field(ge=FIRST, le=9999)] = Field(
+    tile: Annotated[int, Field(ge=FIRST, le=LAST)] = Field(
         default=FIRST, description="Of a UDIM set, the tile that it is on."
     )
 
