@@ -15,6 +15,7 @@ import argparse
 import contextlib
 import os
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -33,6 +34,8 @@ SIGNALS = (signal.SIGKILL, signal.SIGTERM, signal.SIGHUP)
 SETTLE = 5.0
 """Seconds in which processes below one that was ended must end."""
 Files = dict[str, bytes]
+_DATE = re.compile(rb"\d{4}:\d\d:\d\d \d\d:\d\d:\d\d")
+"""When an OpenEXR was written, which its header says."""
 
 
 @dataclass(frozen=True)
@@ -104,9 +107,9 @@ def prepare(folder: Path) -> None:
 
 
 def files(folder: Path, hidden: bool = False) -> Files:
-    """All files below a folder by name; those under hidden names only if asked for."""
+    """All files below a folder by name, without dates; those under hidden names if asked for."""
     return {
-        str(path.relative_to(folder)): path.read_bytes()
+        str(path.relative_to(folder)): _DATE.sub(b"", path.read_bytes())
         for path in sorted(folder.rglob("*"))
         if path.is_file() and (hidden or not path.name.startswith("."))
     }

@@ -281,7 +281,9 @@ def _recipe(
         "roughness": scene.roughness if isinstance(scene.roughness, Path) else None,
     }
     for number, (one, skin) in tiles.items():
-        files[f"skin {number}"], files[f"mask {number}"] = one.skin, one.mask
+        made = one.head is not None and one.source in one.head.albedos.values()
+        files[f"skin {number}"] = one.source if made else one.skin  # not maps made for this run
+        files[f"mask {number}"] = one.mask
         if skin.maps is not None and skin.capture is not None:
             files[f"capture {number}"] = skin.capture.path
     tissue = next(iter(tiles.values()))[1].tissue

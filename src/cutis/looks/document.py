@@ -63,7 +63,7 @@ def complaint(error: ValidationError, document: Any) -> CutisError:
     first = min(found, key=lambda one: one["type"] in _KINDS)
     place, value = _place(first["loc"], document), first.get("input")
     what = _said(first["type"], first["msg"], first.get("ctx") or {}, value)
-    return CutisError(f"{place}: {what}" if place else what)
+    return CutisError(f"{shorten(place)}: {what}" if place else what)
 
 
 _KINDS = {"float_type", "int_type", "string_type", "bool_type", "tuple_type", "model_type"}

@@ -96,7 +96,8 @@ class Look(Part, Recipe):
         found = document["cutis_look"]
         if isinstance(found, int) and found > VERSION:
             raise CutisError(
-                f"{name}: is a look of version {found}, and this cutis reads {VERSION}; update it"
+                f"{name}: is a look of version {shorten(str(found))}, and this cutis reads "
+                f"{VERSION}; update it"
             )
         document.pop("$schema", None)
         try:

@@ -53,7 +53,8 @@ _LOOKUPS = {
 def other_seeds(folder: Path) -> list[Path]:
     """Writes all into `folder`, some of them in folders of their own; the same every time."""
     folder.mkdir(parents=True, exist_ok=True)
-    return [*_tables(folder), *_envi(folder), *_arrays(folder), *_configurations(folder)]
+    return [*_tables(folder), *_envi(folder), *_arrays(folder), *_configurations(folder),
+            *_documents(folder)]  # fmt: skip
 
 
 def _text(path: Path, text: str) -> Path:
@@ -149,3 +150,18 @@ def _configurations(folder: Path) -> list[Path]:
         inside.mkdir()
         found += [_text(inside / name, text), _text(inside / "show.ocio", CONFIG % name)]
     return found
+
+
+def _documents(folder: Path) -> list[Path]:
+    """JSON: a report, a look, and the note of a simulation that was stopped."""
+    report = """{"model": "measured2026", "size": [48, 64], "masked_texels": 3072,
+"calibration": {"gains": [0.88, 1.0, 1.05], "origin": "auto", "illuminant": "D65"},
+"files": ["a.skin.exr"], "made_from": {"asked": {"white": "none"}, "content": {"capture": "00"}}}"""
+    look = """{"cutis_look": 1, "name": "a", "note": "", "tissue": null, "amount": 0.5, "layers":
+[{"amount": 1.0, "edits": [{"map": "melanin", "areas": "all", "do": "multiply", "by": 1.4},
+{"map": "melanin", "do": "set", "to": 0.001}], "mask": [{"part": "patches"}]}]}"""
+    note = """{"skins": [[0.02, 0.02, 80, 0.7, 0.7]], "photons": 10, "seed": 0, "batches": 1}"""
+    written = []
+    for name, text in (("a.report", report), ("b.look", look), ("run", note)):
+        written.append(_text(folder / f"{name}.json", text))
+    return written

@@ -230,6 +230,55 @@ def _space(path: Path) -> Any:
     return np.stack(found)
 
 
+def _report(path: Path) -> Any:
+    """A report beside maps, by those that go on after a stop: damaged, it is no report."""
+    import numpy as np
+
+    from cutis.errors import CutisError
+    from cutis.jobs.job import tell
+    from cutis.jobs.results import look
+    from cutis.maps.lost import given_calibration
+    from cutis.optics import MEASURED2026
+
+    found = look(path, {"white": tell("none")})
+    with contextlib.suppress(CutisError):
+        given_calibration(str(path), MEASURED2026)
+    return np.array([found.complete])
+
+
+def _look(path: Path) -> Any:
+    import numpy as np
+
+    from cutis.looks import Look
+
+    return np.frombuffer(Look.load(path).model_dump_json().encode(), np.uint8)
+
+
+def _journal(path: Path) -> Any:
+    """The note of an interrupted simulation whose result is to be beside this file."""
+    import shutil
+
+    import numpy as np
+
+    from cutis.albedo.simulation import SkinSimulation, Walks
+    from cutis.errors import CutisError
+    from cutis.jobs.journal import Journal
+    from cutis.optics import MEASURED2026
+
+    result = path.with_name(f"{path.stem}.csv")
+    parts = result.with_name(result.name + ".parts")
+    parts.mkdir()
+    try:
+        shutil.copy(path, parts / "run.json")
+        skins = np.array([[0.02, 0.02, 80, 0.7, 0.7]])
+        simulation = SkinSimulation(skins, Walks(MEASURED2026, photons=10))
+        return np.array(Journal(simulation, result).missing())
+    except CutisError as error:
+        raise CutisError(f"{path.name}: {error}") from error
+    finally:
+        shutil.rmtree(parts)
+
+
 _IMAGE = {"texture": _texture, "mask": _mask, "labels": _labels}
 WAYS: dict[str, dict[str, Callable[[Path], Any]]] = {
     **dict.fromkeys((".png", ".jpg", ".tif", ".tx", ".dpx", ".psd"), _IMAGE),
@@ -238,6 +287,7 @@ WAYS: dict[str, dict[str, Callable[[Path], Any]]] = {
     **{key: {"cube": _cube, "table": _table} for key in (".hdr", ".img")},
     ".sli": {"table": _table},
     ".npy": {"cube": _cube, "list": _list},
+    ".json": {"report": _report, "look": _look, "journal": _journal},
     **{key: {"space": _space} for key in (".ocio", ".cube", ".spi1d", ".spi3d", ".clf", ".csp")},
 }
 """How files are read, by their extensions: each way gives an array, or raises CutisError in one
@@ -251,6 +301,8 @@ def command_for(path: Path, out: Path) -> list[str]:
         return ["info", str(path)]
     if path.suffix in (".csv", ".tsv", ".txt"):
         return ["fit", str(path)]
+    if path.suffix == ".json":
+        return ["spectrum", str(path)]  # edits with looks need maps; nothing of it is a table
     if path.suffix in (".hdr", ".img", ".sli", ".npy"):
         return ["fit", str(path), "-o", str(out / "x.skin.exr")]
     if path.suffix in WAYS and WAYS[path.suffix] is not WAYS[".ocio"]:
