@@ -62,6 +62,7 @@ MAKERS = {
     "studies.illuminant_accuracy": ["docs/colour.md#*"],
     "studies.kubelka_munk_accuracy": ["docs/models.md#kubelka*"],
     "studies.light_alternatives": ["docs/decisions/0009-illuminants.md#*"],
+    "studies.check_faults": ["docs/checks.md#*"],
     "studies.lut_accuracy": ["docs/lut.md#*"],
     "studies.model_accuracy": [
         "docs/models.md#recovery", "docs/models.md#smooth", "docs/models.md#loop",
@@ -69,6 +70,7 @@ MAKERS = {
     "studies.monte_carlo_accuracy": ["docs/transport.md#walks"],
     "studies.readme_picture": ["docs/images/face.jpg"],
     "studies.render_grid": ["docs/renders/*.jpg", "docs/render.md#*"],
+    "studies.steady_accuracy": ["docs/models.md#steady_*"],
     "studies.transport_convergence": [
         "docs/transport.md#convergence", "docs/transport.md#published",
         "docs/transport.md#kubelka",

@@ -27,6 +27,7 @@ ROOMS = (
     "checks",
     "render",
     "jobs",
+    "studio",
     "apps",
 )
 """A room may import itself, those before it and SHARED."""

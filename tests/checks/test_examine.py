@@ -98,6 +98,15 @@ def test_a_swatch_and_a_single_texel(look):
     assert kinds(look(colour[:1, :1])) == {"size"}
 
 
+@pytest.mark.parametrize("value", [0.0, 1.0])
+def test_all_black_and_all_white_end_in_findings(look, value):
+    assert kinds(look(np.full((64, 64, 3), value, np.float32)))
+    rng = np.random.default_rng(0)
+    speckled = np.float32(value * np.ones((64, 64, 3)))
+    speckled[rng.random((64, 64)) < 0.002] = 0.5
+    assert kinds(look(speckled))
+
+
 def test_clipped_and_crushed(heads, look):
     rgb, mask = heads["light"]
     assert "clipped" in kinds(look((2.6 * rgb).clip(0, 1), mask))

@@ -11,6 +11,7 @@ from cutis.apps.edit_flags import Changes, edit_flags
 if TYPE_CHECKING:
     from cutis.jobs.edit import EditJob
     from cutis.looks import Look
+    from cutis.optics import Tissue
 
 
 @edit_flags
@@ -39,7 +40,18 @@ def edit(
             "D65-prime, or a CSV of its spectrum.",
         ),
     ] = None,
+    model: Annotated[
+        str | None,
+        typer.Option("--model", help="Of maps that lost theirs in another program."),
+    ] = None,
     method: options.Method = None,
+    calibration: Annotated[
+        str | None,
+        typer.Option(
+            "--calibration",
+            help="Of maps that lost theirs: three gains (0.9,1,1.1) or NAME.report.json.",
+        ),
+    ] = None,
     output_colorspace: options.OutputColorspace = None,
     ocio: options.Ocio = None,
     save_maps: Annotated[
@@ -70,9 +82,11 @@ def edit(
     from cutis.errors import CutisError
     from cutis.jobs.edit import EditJob
     from cutis.jobs.edit_frames import EditFramesJob, amounts_of
+    from cutis.maps.lost import given_calibration
     from cutis.report.words import percent
 
-    if not changes and illuminant is None and not edited_before(maps):
+    named = model is not None or calibration is not None
+    if not (changes or illuminant or (named and save_maps)) and not edited_before(maps):
         raise CutisError(
             "there is nothing to do: give --preset tanning, --look NAME.look.json, --tone ita:-20, "
             "a parameter flag such as --melanin x1.4, or --illuminant A"
@@ -81,7 +95,12 @@ def edit(
     job = EditJob(
         maps, output, look, amounts[0], mask, source,
         light=None if illuminant is None else options.light_of(illuminant),
-        model=None if method is None else options.model_of("default", method),
+        model=None if method is None and model is None else options.model_of(
+            model or "default", method
+        ),
+        calibration=None if calibration is None else given_calibration(
+            calibration, tissue_of(maps, model)
+        ),
         space=options.space_of(output_colorspace, ocio),
         save_maps=save_maps,
     )  # fmt: skip
@@ -110,13 +129,28 @@ def edit(
         out.say(f"{one.changed:,} texels changed; wrote {one.output}")
 
 
+def tissue_of(maps: Path, model: str | None) -> "Tissue":
+    """The tissue of a model by its name, or of the model that maps say they were made by."""
+    if model is not None:
+        return options.model_of(model).tissue
+    from cutis.maps import MapsFile
+
+    with MapsFile(first_of(maps)) as file:
+        return file.made_by.load().tissue
+
+
+def first_of(maps: Path) -> Path:
+    """The first tile of a set; the file itself otherwise."""
+    from cutis.textures.udim import TOKEN, udim_tiles
+
+    return next(iter(udim_tiles(maps).values())) if TOKEN in maps.name else maps
+
+
 def edited_before(maps: Path) -> bool:
     """Whether maps hold edits already, which are written with no others too."""
     from cutis.maps import MapsFile
-    from cutis.textures.udim import TOKEN, udim_tiles
 
-    path = next(iter(udim_tiles(maps).values())) if TOKEN in maps.name else maps
-    with MapsFile(path) as file:
+    with MapsFile(first_of(maps)) as file:
         return bool(file.header.edits or file.header.changed)
 
 

@@ -20,6 +20,7 @@ from cutis.apps import (
     render,
     simulate,
     spectrum,
+    studio,
     train,
 )
 from cutis.apps.edit_flags import InOrder
@@ -61,6 +62,7 @@ app.command("check")(check.check)
 app.command("edit", cls=InOrder)(edit.edit)
 app.command("render", cls=InOrder)(render.render)
 app.command("export", cls=InOrder)(export.export)
+app.command("studio")(studio.studio)
 app.command("spectrum")(spectrum.spectrum)
 app.command("fit")(fit.fit)
 app.command("simulate")(simulate.simulate)

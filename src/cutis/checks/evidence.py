@@ -10,6 +10,7 @@ from cutis.arrays import Colours, Floats, Picture, Where
 from cutis.checks.gathering import INSIDE, Gathered
 from cutis.colour import encode_srgb
 from cutis.colour.transfer import decode_srgb
+from cutis.errors import CutisError
 from cutis.inverse import Model
 from cutis.inverse.calibration import search
 from cutis.maps.plain import Map
@@ -82,10 +83,11 @@ class Evidence:
         return float((self.confidence(colours) >= LOW).mean()) if len(colours) else 0.0
 
     def gains_of(self, colours: Colours) -> NDArray[np.float64]:
-        """(3,) gains with which the model explains most of the colours (n, 3)."""
-        if not len(colours):
+        """(3,) gains with which the model explains most of the colours (n, 3); 1 of few."""
+        try:
+            return search(colours, lambda c: self._model.decode(self._model.encode(c)))
+        except CutisError:  # hardly a texel that is not black
             return np.ones(3)
-        return search(colours, lambda c: self._model.decode(self._model.encode(c)))
 
     # the whole, reduced ---------------------------------------------------------------------------
 

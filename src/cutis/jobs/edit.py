@@ -9,7 +9,7 @@ import numpy as np
 
 from cutis.colour import Light, Space
 from cutis.errors import CutisError
-from cutis.inverse import Model
+from cutis.inverse import Calibration, Model
 from cutis.jobs.files import check_outputs
 from cutis.jobs.job import digest_of
 from cutis.kernels.behind import Behind
@@ -54,8 +54,9 @@ class EditJob:
 
     `edits` are a look, or edits in order: `amount` (0–1) of them, inside the painted `mask`.
     `source` is the capture where it is not where the maps say; `model` another model than that of
-    the maps. `light` shows the face under another light. `space` is that of the output, None for
-    the capture's. `save_maps` also writes the edited maps. Of a UDIM set, all names hold <UDIM>.
+    the maps, `calibration` what the capture was multiplied by, where the maps lost it. `light`
+    shows the face under another light. `space` is that of the output, None for the capture's.
+    `save_maps` also writes the edited maps. Of a UDIM set, all names hold <UDIM>.
     """
 
     maps: Path
@@ -66,6 +67,7 @@ class EditJob:
     source: Path | None = None
     light: Light | None = None
     model: Model | None = None
+    calibration: Calibration | None = None
     space: Space | None = None
     save_maps: Path | None = field(default=None, metadata={"result": False})
 
@@ -107,6 +109,7 @@ class EditJob:
     def _run(self, wanted: Recipe, memo: Memo, progress: Progress) -> Edited:
         with contextlib.ExitStack() as stack:
             maps = stack.enter_context(MapsFile(self.maps))
+            maps.named(self.model, self.calibration)
             path = find_source(maps.provenance, self.maps, self.source)
             inputs = {"the file of maps": self.maps, "the capture": path, "the mask": self.mask}
             check_outputs([self.output, self.save_maps], inputs)
@@ -120,7 +123,7 @@ class EditJob:
             model = self.model or maps.made_by.load()
             done = self._albedo(stack, maps, texture, changes, model, progress)
             said = tuple(note for change in changes for note in change.notes)
-            done = replace(done, notes=(*texture.notes, *said))
+            done = replace(done, notes=(*maps.notes, *texture.notes, *said))
             if self.save_maps is not None:
                 looks = (*maps.header.looks, *wanted.documents)
                 self._maps(stack, maps, texture, changes, looks, done, model, progress)

@@ -4,16 +4,19 @@ import contextlib
 import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from cutis.errors import CutisError
+from cutis.inverse import Model
 from cutis.inverse.calibration import Calibration
 from cutis.maps.changes import Change, Tile
-from cutis.maps.defaults import OLD_DEFAULT
+from cutis.maps.defaults import DEFAULT, OLD_DEFAULT
 from cutis.maps.face import TileOf, edited
+from cutis.maps.lost import lost_note
 from cutis.maps.plain import Map, Maps, Place
 from cutis.maps.skin_maps import EditedEstimate, Estimate, MadeBy, SkinMaps
 from cutis.maps.source import find_source, open_source, source_note
@@ -36,7 +39,8 @@ class MapsFile(Closing):
 
     `header` is a `Header`, `frame` says where the maps lie on their picture; with `shown` they are
     those of all of it, outside the mask where nothing is stored. Close it, or use it in a with
-    block. Raises CutisError where channels are missing, out of range, or the header is
+    block. `untold` names what the header does not say and should: "model", "calibration". Raises
+    CutisError where channels are missing, out of range, or the header is
     damaged.
     """
 
@@ -52,6 +56,7 @@ class MapsFile(Closing):
         try:
             self._check_channels()
             self.shape, self.frame = self._file.shape, self._file.frame
+            self.untold: tuple[str, ...] = ()
             self.header = self._read_header()
         except BaseException:
             self.close()
@@ -68,6 +73,10 @@ class MapsFile(Closing):
     def _read_header(self) -> Header:
         there, metadata = self._file.names, self._file.metadata
         notes = {k[len(PREFIX) :]: str(v) for k, v in metadata.items() if k.startswith(PREFIX)}
+        without = OLD_DEFAULT if notes else DEFAULT  # the first files named no model
+        needed = ("model", "calibration")
+        if "model" not in notes or "source" in notes:  # of fitted spectra there are no gains
+            self.untold = tuple(name for name in needed if name not in notes)
         try:
             calibration = _calibration(notes.pop("calibration", "{}"))
             state = json.loads(notes.pop("survey", "{}"))
@@ -85,7 +94,7 @@ class MapsFile(Closing):
             np.linalg.LinAlgError,
         ) as error:  # fmt: skip
             raise CutisError(f"{self.path.name}: its header is damaged; estimate again") from error
-        model, digest = notes.pop("model", "default"), notes.pop("model_digest", "")
+        model, digest = notes.pop("model", without), notes.pop("model_digest", "")
         rare = tuple(name for name in RARE_NAMES if name in there)
         known = (*NAMES, *rare)
         provenance = {k: v for k, v in notes.items() if k not in (*NAMES, *RARE_NAMES)}
@@ -115,6 +124,20 @@ class MapsFile(Closing):
     def made_by(self) -> MadeBy:
         """The model, whether or not it is here."""
         return MadeBy(self.header.model, self.header.digest)
+
+    @property
+    def notes(self) -> list[str]:
+        """What people should know of the header."""
+        return [lost_note(self.path, self.untold, self.header.model)] if self.untold else []
+
+    def named(self, model: Model | None, calibration: Calibration | None) -> None:
+        """Takes a calibration, and a model where the header says none, in place of what it says."""
+        if model is not None and "model" in self.untold:
+            self.header = replace(self.header, model=model.name, digest=model.digest)
+        if calibration is not None:
+            self.header = replace(self.header, calibration=calibration)
+        given = {"model": model, "calibration": calibration}
+        self.untold = tuple(name for name in self.untold if given[name] is None)
 
     def close(self) -> None:
         """Lets go of the file."""
