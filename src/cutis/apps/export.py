@@ -69,7 +69,7 @@ def export(
         raise CutisError("--for needs --maps, the NAME.skin.exr that the folder is made of")
     elif changes:
         raise CutisError(
-            "--for takes maps as they are: write edited ones with cutis edit -o NAME.skin.exr first"
+            "--for takes maps as they are: write edited ones with cutis edit --save-maps first"
         )
     else:
         job = PackageJob(output, engine, maps)

@@ -37,10 +37,13 @@ README = """\
 
 Written by cutis for shaders in GLSL 3.30, GLSL ES 3.00 or later.
 
-- `{name}.packed.exr`: half floats, no colour: melanin^¼, blood^¼, thickness / (thickness + 60 µm), eumelanin in R, G, B, A. Turn sRGB off.
-- `cutis.glsl`: `cutis_albedo` and `cutis_packed`; `cutis.table.f16`: their table. How it is loaded stands in the text.
-- `{name}.json`: oxygenation of the whole face, the gains of the capture: divide what the shader gives by them.
-- Change a skin as `albedo * decoded(changed) / decoded(as it was)`, so that what the maps do not explain stays.
+- `{name}.packed.exr`: half floats, no colour, so turn sRGB off. R, G, B, A hold melanin^1/4,
+  blood^1/4, thickness / (thickness + 60 um), eumelanin.
+- `cutis.glsl`: `cutis_albedo` and `cutis_packed`; `cutis.table.f16`: their table. How it is loaded
+  stands in the text.
+- `{name}.json`: oxygenation of the whole face, and the gains of the capture: divide by them what
+  the shader gives.
+- Change a skin as `albedo * decoded(changed) / decoded(as it was)`: what maps do not explain stays.
 - MIP levels of maps are not those of colour: prefer levels of the decoded colour where they matter.
 """
 
