@@ -47,6 +47,11 @@ MAKERS = {
         "src/cutis/data/weights/measured2026-trust.npz",
         "src/cutis/data/weights/aliaga2022-exact.npz",
     ],
+    "studies.build_tones": [
+        "src/cutis/data/tones/*.csv", "docs/tones.md#path", "docs/tones.md#halves",
+    ],
+    "studies.tone_accuracy": ["docs/tones.md#tones*", "docs/images/tones.jpg"],
+    "studies.preset_sheet": ["docs/presets.md#presets", "docs/images/presets.jpg"],
     "studies.build_appearance": ["src/cutis/data/page/*.csv", "src/cutis/data/page/*.ttf"],
     "studies.albedo_accuracy": ["docs/albedo.md#*"],
     "studies.albedo_inversion": ["docs/subsurface.md#*", "docs/images/subsurface.png"],
@@ -65,6 +70,7 @@ MAKERS = {
     "studies.monte_carlo_accuracy": ["docs/transport.md#walks"],
     "studies.readme_picture": ["docs/images/face.jpg"],
     "studies.render_grid": ["docs/renders/*.jpg", "docs/render.md#*"],
+    "studies.steady_accuracy": ["docs/models.md#steady_*"],
     "studies.transport_convergence": [
         "docs/transport.md#convergence", "docs/transport.md#published",
         "docs/transport.md#kubelka",

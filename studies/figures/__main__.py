@@ -28,7 +28,7 @@ def figures(
 
     Example: python -m studies.figures -o docs
     """
-    from cutis.apps.console import out, steps
+    from cutis.apps.console import bar, out
     from cutis.errors import CutisError
     from studies.figures import FIGURES, cast, write_page
     from studies.generated import record
@@ -38,12 +38,12 @@ def figures(
     if unknown:
         raise CutisError(f"unknown figure {unknown[0]!r}; known are {', '.join(FIGURES)}")
     players = cast(data)
-    options.make_folder(output)
+    output.mkdir(parents=True, exist_ok=True)
     chosen = [name for name in FIGURES if only is None or name in only]
     sections = []
-    with steps(len(chosen), quiet) as progress:
-        for name in chosen:
-            progress.step(name)
+    with bar(quiet) as progress:
+        for number, name in enumerate(chosen):
+            progress(number, len(chosen), name)
             sections.append(FIGURES[name](players))
     page = write_page(sections, output)
     if output.resolve() == DOCS and not only:

@@ -62,13 +62,13 @@ def read_skins(data: Path) -> ArchivedSkins:
     """
     folder = data / "spectra" / "measured"
     spectra, people = [], []
-    for row in csv.DictReader(_lines(folder / "issa_half_a.csv")):
+    for row in csv.DictReader(lines_of(folder / "issa_half_a.csv")):
         if row["qc"] == "0":
             spectra.append([float(row[f"{band:g}"] or "nan") for band in BANDS])
             origin = int(row["origin"])
             site = int(row["location"] or -1)
             people.append((f"{ORIGINS[origin]} {row['subject']}", origin, row["group"], site))
-    header, *lines = _lines(folder / "nist_forearm_half_a.csv")
+    header, *lines = lines_of(folder / "nist_forearm_half_a.csv")
     table = np.array([[float(cell) for cell in line.split(",")] for line in lines])
     for name, column in zip(header.strip().split(",")[1:], table[:, 1:].T, strict=True):
         spectra.append(np.interp(BANDS, table[:, 0], column))
@@ -83,6 +83,7 @@ def measured_skins(data: Path) -> NDArray[np.float64]:
     return np.asarray((read_skins(data).spectra - SURFACE) / (1 - SURFACE))
 
 
-def _lines(path: Path) -> Iterator[str]:
+def lines_of(path: Path) -> Iterator[str]:
+    """Lines of a table without its comments."""
     with path.open(encoding="utf-8") as file:
         yield from (line for line in file if not line.startswith("#"))

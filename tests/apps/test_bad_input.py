@@ -157,7 +157,7 @@ def test_flags_of_estimate(arguments, message, write_face, cutis, one_line, tmp_
         (["--thickness", "5"], "thickness = 5 is outside its range 10 to 250 µm"),
         (["--melanin", "dark"], "--melanin takes a value"),
         (["--melanin", "x-1"], "cannot multiply melanin by -1"),
-        (["--melanin", "x2", "--amount", "1.5"], "amount of an edit must lie in 0 to 1"),
+        (["--melanin", "x2", "--amount", "1.5"], "--amount is a number from 0 to 1"),
         (["--melanin", "x2", "--source", "nowhere.png"], "nowhere.png"),
     ],
 )
@@ -275,7 +275,9 @@ def test_flags_of_spectrum(arguments, message, cutis, one_line):
 
 def test_unknown_recipes(cutis, one_line, tmp_path):
     line = one_line(cutis("train", "mystery", "-o", tmp_path / "run"))
-    assert "unknown recipe 'mystery'; known are measured2026, aliaga2022-exact, aliaga2022" in line
+    assert "unknown recipe 'mystery'; known are " in line
+    for name in ("measured2026", "measured2026b", "aliaga2022-exact", "aliaga2022"):
+        assert name in line
     assert not (tmp_path / "run").exists()
 
 

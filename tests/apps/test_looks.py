@@ -253,3 +253,33 @@ def test_bad_animations_are_one_line(flags, said, maps, cutis, one_line, tmp_pat
     out = tmp_path / "a.png"
     assert said in one_line(cutis("edit", maps, "--melanin", "x2", "-o", out, *flags))
     assert not list(tmp_path.glob("a.*"))
+
+
+def test_deltas_drive_the_albedo_to_the_edit(maps, cutis, tmp_path):
+    out = tmp_path / "deltas"
+    ended = cutis("export", out, "--delta", "--preset", "flushing", "--preset", "vitiligo",
+                  "--maps", maps)  # fmt: skip
+    assert (ended.code, ended.err) == (0, "")
+    listed = json.loads((out / "deltas.json").read_text())["looks"]
+    assert [one["file"] for one in listed] == ["flushing.delta.exr", "vitiligo.delta.exr"]
+    assert all(one["half_way_delta_e"]["p95"] < 3 for one in listed)
+    skin = package.load(maps)
+    light = package.read(maps.parents[1] / "face.png").linear()
+    for name in ("flushing", "vitiligo"):
+        channels = read_channels(out / f"{name}.delta.exr")[0]
+        delta = np.stack([channels[one] for one in "RGB"], -1)
+        expected = skin.apply(presets.preset(name)).albedo()
+        np.testing.assert_allclose(light * np.exp(delta), expected, rtol=1e-3)
+        assert not delta[skin.mask == 0].any()
+        assert delta.any()
+
+
+def test_deltas_of_a_set_and_bad_deltas(set_of_maps, cutis, one_line, tmp_path):
+    flags = ("--delta", "--look", tmp_path / "spring.look.json")
+    assert cutis("export", tmp_path / "d", *flags, "--maps", set_of_maps, "-q").code == 0
+    found = {path.name for path in (tmp_path / "d").iterdir()}
+    assert found == {"deltas.json", *(f"spring.delta.{number}.exr" for number in NUMBERS)}
+    assert "give its maps with --maps" in one_line(cutis("export", tmp_path / "e", *flags))
+    nothing = cutis("export", tmp_path / "e", "--delta", "--maps", set_of_maps)
+    assert "nothing to export" in one_line(nothing)
+    assert not (tmp_path / "e").exists()

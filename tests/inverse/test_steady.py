@@ -163,27 +163,27 @@ def test_colours_that_no_skin_has_stay_what_they_were(model, skin_rgb):
 
 def test_rounding_is_not_explained(model, skin_rgb):
     """8-bit texels of dark skin: blood is steadier than where rounding is taken for skin."""
-    u = np.full((64, 64, 5), (0.55, 0.4, 0.3, 0.4, 0.6))
+    u = np.full((64, 64, 5), (0.62, 0.4, 0.3, 0.4, 0.6))
     u[..., 0] += 0.02 * np.sin(np.arange(64) / 9)
     from cutis.colour.transfer import decode_srgb, encode_srgb
 
     rgb = decode_srgb(np.round(encode_srgb(model.decode(from_coordinates(u))) * 255) / 255)
     rounded = found(model, rgb.astype(np.float32), rounding=1 / 255)
     taken = found(model, rgb.astype(np.float32))
-    assert rough(rounded, "blood") < 0.7 * rough(taken, "blood")
+    assert rough(rounded, "blood") < 0.8 * rough(taken, "blood")
     assert delta_e(model.decode(rounded), rgb.astype(np.float32)).max() < 2
 
 
 def test_unedited_texels_come_back_bit_for_bit(skin_rgb):
-    skin = cutis.estimate(skin_rgb, model="measured2026b")
+    skin = cutis.estimate(skin_rgb, model="measured2026b", steady=True)
     np.testing.assert_array_equal(skin.albedo(), skin_rgb)
     np.testing.assert_array_equal(skin.multiply(melanin=1.0).albedo(), skin_rgb)
 
 
 def test_off_is_every_texel_by_itself(skin_rgb, model):
-    off = cutis.estimate(skin_rgb, model="measured2026b", steady=False)
+    off = cutis.estimate(skin_rgb, model="measured2026b")
     np.testing.assert_array_equal(off.parameters(), model.encode(skin_rgb))
-    on = cutis.estimate(skin_rgb, model="measured2026b")
+    on = cutis.estimate(skin_rgb, model="measured2026b", steady=True)
     assert not np.array_equal(on.thickness, off.thickness)
     assert model.alone.reach == 0
     assert model.alone == model

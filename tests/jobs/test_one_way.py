@@ -37,6 +37,7 @@ ESTIMATE = {
     "sigma": ({"sigma": False}, ("--no-sigma",)),
     "page": ({"page": True}, ("--report",)),
     "orientation": ({"orientation": "ignore"}, ("--orientation", "ignore")),
+    "steady": ({"steady": True}, ("--steady", "on")),
     "again": ({"again": True}, ("--again",)),
 }
 GAINS = Calibration((1.1, 1.0, 0.9), "given")
@@ -141,7 +142,7 @@ def test_estimate(name, work, cutis):
     same_files(work / "cli", work / "job")
 
 
-@pytest.mark.parametrize("name", ["white", "exposure", "light", "model", "sigma"])
+@pytest.mark.parametrize("name", ["white", "exposure", "light", "model", "sigma", "steady"])
 def test_estimate_in_memory(name, work, cutis):
     values, flags = ESTIMATE[name]
     assert cutis("estimate", "face.png", "--mask", "mask.png", "-o", "cli", "-q", *flags).code == 0

@@ -7,6 +7,7 @@ import pytest
 
 from cutis.errors import CutisError
 from cutis.maps import DEFAULT, Edit, estimate, save_maps
+from cutis.maps.changes import Step
 from cutis.render.blender import find_blender
 from cutis.render.heads import head
 from cutis.render.material_export import export_material
@@ -26,9 +27,9 @@ def maps(tmp_path, write_face, face_mask):
 def test_files_are_those_told_and_name_each_other(maps, tmp_path):
     folder = tmp_path / "out"
     folder.mkdir()
-    edit = Edit("blood", "multiply", 2.0)
+    changes = [Step((Edit("blood", "multiply", 2.0),), 0.5)]
     with Skin(maps) as skin:
-        done = export_material(skin, folder, "tan", edits=[edit], amount=0.5, **SETTINGS)
+        done = export_material(skin, folder, "tan", changes=changes, **SETTINGS)
     assert sorted(done.files) == sorted(folder.iterdir())
     stored = json.loads((folder / "tan.material.json").read_text("utf-8"))
     named = {texture["file"] for texture in stored["textures"].values()}

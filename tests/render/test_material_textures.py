@@ -8,6 +8,7 @@ import pytest
 from cutis.colour import LINEAR
 from cutis.errors import CutisError
 from cutis.maps import Edit, estimate, save_maps
+from cutis.maps.changes import Step
 from cutis.render import cycles
 from cutis.render.inversion import diffuse_albedo
 from cutis.render.material_textures import write_textures
@@ -51,8 +52,8 @@ def test_albedo_is_that_of_pictures_and_tells_its_colour_space(maps, tmp_path):
 
 
 def test_edits_are_in_it(maps, tmp_path):
-    edits = [Edit("melanin", "multiply", 3.0)]
-    write(maps, tmp_path, edits=edits)
+    edits = [Step((Edit("melanin", "multiply", 3.0),))]
+    write(maps, tmp_path, changes=edits)
     edited, _ = stacked(tmp_path / "out.albedo.exr")
     np.testing.assert_allclose(edited, shown(maps, edits), rtol=2**-11, atol=2**-24)
     assert edited.mean() < 0.95 * shown(maps).mean()

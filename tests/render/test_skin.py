@@ -5,6 +5,7 @@ from cutis.colour import LINEAR
 from cutis.errors import CutisError
 from cutis.inverse import Calibration
 from cutis.maps import Edit, estimate, save_maps
+from cutis.maps.changes import Step
 from cutis.render.skin import Skin
 from cutis.textures import Texture, read_texture, write_texture
 
@@ -46,7 +47,7 @@ def test_maps_give_the_calibrated_capture(maps):
 
 
 def test_edits_are_in_the_albedo_on_skin_only(maps):
-    before, after = rows_of(maps), rows_of(maps, [Edit("melanin", "multiply", 3.0)])
+    before, after = rows_of(maps), rows_of(maps, [Step((Edit("melanin", "multiply", 3.0),))])
     assert (after[:, :-2] < before[:, :-2]).all()
     np.testing.assert_array_equal(after[:, -2:], before[:, -2:])
 

@@ -120,7 +120,7 @@ def test_dragging_draws_before_it_is_done(page):
     page.mouse.move(box["x"] + box["width"] / 2, y)
     page.mouse.down()
     page.mouse.move(box["x"] + 0.9 * box["width"], y, steps=8)
-    page.wait_for_function("performance.getEntriesByName('slider').length > 0")
+    page.wait_for_function("() => performance.getEntriesByName('slider').length > 0")
     until(lambda: sum(colour(page)) < 0.9 * sum(before))
     assert page.evaluate("document.body.dataset.revision") == revision
     page.mouse.up()
@@ -178,6 +178,63 @@ def test_the_pointer_reads_colours_maps_and_spectrum(page):
     assert "ITA°" in text
     assert "Melanin" in text
     assert "±" in text
+
+
+def test_a_brush_paints_a_mask_the_eraser_takes_it_away(page):
+    revision = drawn(page)
+    page.keyboard.press("n")
+    revision = drawn(page, revision)
+    slide(page, "melanin", "4")
+    revision = drawn(page, revision)
+    page.keyboard.press("b")
+    box = page.locator(".stage canvas").bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+    def stroke():
+        page.mouse.move(x, y - 40)
+        page.mouse.down()
+        page.mouse.move(x, y + 40, steps=6)
+        page.mouse.up()
+
+    everywhere = colour(page, 0.7)
+    stroke()
+    revision = drawn(page, revision)
+    until(lambda: sum(colour(page, 0.7)) > 1.2 * sum(everywhere))
+    painted, beside = colour(page), colour(page, 0.7)
+    assert sum(painted) < 0.8 * sum(beside)
+    assert page.locator(".parts li").inner_text().startswith("Painted, 1")
+    page.keyboard.press("m")
+    until(lambda: colour(page)[0] > colour(page)[1] + 80)
+    page.keyboard.press("m")
+    page.keyboard.press("x")
+    stroke()
+    revision = drawn(page, revision)
+    until(lambda: sum(colour(page)) > 1.2 * sum(painted))
+    page.keyboard.press("Escape")
+    page.get_by_role("button", name="Range").click()
+    revision = drawn(page, revision)
+    assert page.locator(".parts li").count() == 2
+    page.keyboard.press("Delete")
+    drawn(page, revision)
+
+
+def test_maps_have_a_scale_presets_a_picture_the_history_leads_back(page):
+    revision = drawn(page)
+    for kind in ("map:melanin", "sigma:blood", "confidence:all"):
+        page.locator(".kind").select_option(kind)
+        page.wait_for_function("() => document.querySelectorAll('.ticks span').length > 1")
+    page.locator(".kind").select_option("")
+    page.get_by_role("button", name="Presets").click()
+    page.wait_for_function("() => document.querySelectorAll('.presets img').length > 12")
+    page.get_by_role("button", name="tanning").click()
+    revision = drawn(page, revision)
+    assert page.locator(".layers li").count() >= 2
+    page.get_by_role("button", name="History").click()
+    page.wait_for_selector(".history button[aria-current]")
+    page.locator(".history button").last.click()
+    drawn(page, revision)
+    page.get_by_role("button", name="Edit", exact=True).click()
+    assert page.locator(".layers li").count() == 1
 
 
 def test_what_is_saved_is_what_edit_gives(page, running):

@@ -68,6 +68,15 @@ def test_parts_of_masks_are_replaced_and_taken_away(state):
     assert do(other, op="part", id=id, at=0, part=None) == state
 
 
+def test_strokes_of_two_pages_are_both_kept(state):
+    id = state.ids[1]
+    stroke = {"points": [[0.5, 0.5], [0.6, 0.5]], "radius": 0.1}
+    both = do(do(state, op="stroke", id=id, stroke=stroke), op="stroke", id=id,
+              stroke={**stroke, "erase": True})  # fmt: skip
+    (part,) = both.look.layers[1].mask
+    assert [one.erase for one in part.strokes] == [False, True]
+
+
 @pytest.mark.parametrize(
     ("op", "said"),
     [

@@ -64,13 +64,15 @@ def edit(
 ) -> None:
     """Edit skin maps and write the albedo with the edit in it.
 
-    Presets, looks and parameter flags apply in the order typed; --amount and --mask hold for all of
-    them. Texels that the edit does not change come back bit for bit. Of a UDIM set, give MAPS, the
-    output and --mask as NAME.<UDIM>.EXT.
+    Presets, looks, tones and parameter flags apply in the order typed; --amount and --mask hold for
+    all of them. Texels that the edit does not change come back bit for bit. Of a UDIM set, give
+    MAPS, the output and --mask as NAME.<UDIM>.EXT.
 
     Example: cutis edit out/face.skin.exr --melanin x1.4 --blood x0.5 -o tanned.png
 
     Example: cutis edit out/face.skin.exr --look burn.look.json --melanin x1.2 -o burnt.png
+
+    Example: cutis edit out/face.skin.exr --tone monk:7 -o another.png
 
     Example: cutis edit out/face.skin.exr --illuminant A -o bulb.png
 
@@ -86,8 +88,8 @@ def edit(
     named = model is not None or calibration is not None
     if not (changes or illuminant or (named and save_maps)) and not edited_before(maps):
         raise CutisError(
-            "there is nothing to do: give --preset tanning, --look NAME.look.json, a parameter "
-            "flag such as --melanin x1.4, or --illuminant A"
+            "there is nothing to do: give --preset tanning, --look NAME.look.json, --tone ita:-20, "
+            "a parameter flag such as --melanin x1.4, or --illuminant A"
         )
     look, amounts = changes.look(), amounts_of(amount, frames)
     job = EditJob(

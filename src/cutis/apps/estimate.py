@@ -50,7 +50,7 @@ def estimate(
         typer.Option(help="Picture in flat colours, one for each region to report on."),
     ] = None,
     orientation: options.Turning = options.Turn.AUTO,
-    steady: options.Steadiness = options.Switch.ON,
+    steady: options.Steadiness = options.Switch.OFF,
     udim: Annotated[bool, typer.Option("--udim", help="FACE is one tile of a UDIM set.")] = False,
     sequence: Annotated[
         bool, typer.Option("--sequence", help="All are of one person: share one calibration.")

@@ -16,7 +16,7 @@ def export(
         Path,
         typer.Argument(
             help="An edit as NAME.cube or NAME.clf; a model as decoder.onnx, decoder.glsl or "
-            "encoder.onnx; with --for a new folder."
+            "encoder.onnx; with --for or --delta a folder."
         ),
     ],
     changes: Changes,
@@ -42,6 +42,11 @@ def export(
         str | None,
         typer.Option("--for", help="Make a folder of --maps that drops into: game."),
     ] = None,
+    delta: Annotated[
+        bool,
+        typer.Option("--delta", help="What each look does to the albedo of --maps, as textures."),
+    ] = False,
+    source: options.Source = None,
     quiet: options.Quiet = False,
 ) -> None:
     """Write an edit as a LUT, or a model as ONNX or GLSL, for other programs.
@@ -52,11 +57,28 @@ def export(
     Example: cutis export face_game/ --for game --maps out/face.skin.exr
 
     Example: cutis export tan.clf --preset tanning --colorspace ACEScg --maps out/face.skin.exr
+
+    Example: cutis export deltas --delta --preset flushing --look a.look.json --maps face.skin.exr
     """
     from cutis.apps.console import bar, out
     from cutis.colour import SRGB
+    from cutis.jobs.delta import DeltaJob
     from cutis.jobs.export import ExportJob
     from cutis.jobs.package import PackageJob
+
+    if delta and engine is not None:
+        raise CutisError("--for and --delta make two folders: give one of them at a time")
+    if delta:
+        if maps is None:
+            raise CutisError("--delta is of a face: give its maps with --maps NAME.skin.exr")
+        work = DeltaJob(maps, output, tuple(one.within(amount) for one in changes.each()), source)
+        with bar(quiet) as progress:
+            files = work.run(progress)
+        if not quiet:
+            out.say(f"wrote {', '.join(file.name for file in files)} into {output}")
+        return
+    if source is not None:
+        raise CutisError("--source is of --delta; a LUT needs no capture")
 
     job: ExportJob | PackageJob
     if engine is None:

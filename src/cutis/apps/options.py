@@ -65,7 +65,10 @@ Again = Annotated[
     typer.Option("--again", help="Also what is there already, and what was made with other flags."),
 ]
 Cluster = Annotated[
-    str | None, typer.Option("--cluster", help="Dask scheduler to work on: tcp://host:8786.")
+    str | None,
+    typer.Option(
+        "--cluster", help="Dask scheduler to work on: tcp://127.0.0.1:8786, tls://host:8786."
+    ),
 ]
 Colorspace = Annotated[
     str,
@@ -109,8 +112,8 @@ Steadiness = Annotated[
     Switch,
     typer.Option(
         "--steady",
-        help="on smooths thickness, melanin type and oxygenation as far as colours allow; off "
-        "finds every texel by itself.",
+        help="on smooths melanin type and oxygenation as far as colours allow, at the cost of "
+        "thickness; off finds every texel by itself.",
     ),
 ]
 Turning = Annotated[

@@ -68,7 +68,9 @@ class ModelSurvey(Survey, Protocol):
 
 
 TileEstimate: TypeAlias = Callable[[Map, Map, State, bool], Found]
-"""(h, W, 3) calibrated colours, (h, W) cover, the survey's findings, whether σ is wanted → maps."""
+"""(h, W, 3) calibrated colours, (h, W) cover, the survey's findings, whether σ is wanted → maps.
+
+Where no σ is found, it is that of each texel's colour (`Model.trust`)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,16 +166,17 @@ class Model:
         Rows within `reach` of an edge of the tile that is no edge of the texture are not yet what
         they are inside: whoever cuts tiles gives so many more rows and leaves them out afterwards.
         """
-        if self.of_tile is not None:
-            return self.of_tile(colours, cover, state or {}, sigma)
         inside = cover > 0
-        chosen = colours[inside]
-        maps = dict(zip(NAMES, _spread(self.encode(chosen), inside), strict=True))
-        trust = self.trust(chosen) if sigma else None
+        chosen = texels(colours, inside)
+        if self.of_tile is None:
+            found = Found(dict(zip(NAMES, spread(self.encode(chosen), inside), strict=True)))
+        else:
+            found = self.of_tile(colours, cover, state or {}, sigma)
+        trust = self.trust(chosen) if sigma and not found.sigmas else None
         if trust is None:
-            return Found(maps)
-        *sigmas, confidence = _spread(trust, inside)
-        return Found(maps, dict(zip(NAMES, sigmas, strict=True)), confidence)
+            return found
+        *sigmas, confidence = spread(trust, inside)
+        return replace(found, sigmas=dict(zip(NAMES, sigmas, strict=True)), confidence=confidence)
 
 
 def content_digest(*parts: object) -> str:
@@ -186,7 +189,12 @@ def content_digest(*parts: object) -> str:
     return total.hexdigest()
 
 
-def _spread(values: Map, inside: NDArray[np.bool_]) -> Map:
+def texels(values: Map, inside: NDArray[np.bool_]) -> Map:
+    """(h, W, c) → (n, c) of the texels inside; no copy where that is all."""
+    return values.reshape(-1, values.shape[-1]) if inside.all() else values[inside]
+
+
+def spread(values: Map, inside: NDArray[np.bool_]) -> Map:
     """(n, c) values of the texels inside → (c, h, W), 0 elsewhere."""
     whole = np.zeros((values.shape[1], *inside.shape), dtype=np.float32)
     whole[:, inside] = values.T

@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 from cutis.colour.difference import lab
 from cutis.colour.transfer import decode_srgb, encode_srgb
 from cutis.inverse.baked import AXES, Baked, Chart
-from cutis.inverse.model import Found, Map, Model, State
+from cutis.inverse.model import Found, Map, Model, State, spread, texels
 from cutis.inverse.prior import unit_slopes
 from cutis.optics import NAMES
 
@@ -78,14 +78,10 @@ class Steady:
     def __call__(self, colours: Map, cover: Map, state: State, sigma: bool) -> Found:
         """What is found in a tile; `state["rounding"]`, if any, is the step of encoded colours."""
         inside = cover > 0
-        chosen = np.ascontiguousarray(colours[inside], dtype=np.float32)
+        chosen = np.ascontiguousarray(texels(colours, inside), dtype=np.float32)
         own = self.skins(chosen)
         steady = self.steadied(colours, inside, own, float(state.get("rounding", 0.0)))
-        maps = dict(zip(NAMES, _spread(_units(steady), inside), strict=True))
-        if not sigma:
-            return Found(maps)
-        *sigmas, confidence = _spread(self.trust(chosen), inside)
-        return Found(maps, dict(zip(NAMES, sigmas, strict=True)), confidence)
+        return Found(dict(zip(NAMES, spread(_units(steady), inside), strict=True)))
 
     def steadied(
         self, colours: Map, inside: NDArray[np.bool_], own: Map, rounding: float = 0.0
@@ -96,15 +92,17 @@ class Steady:
         if not inside.any():
             return own
         gains, (low, scale) = self.gains(rounding), self._scaling
-        u, expected = np.zeros((2, *inside.shape, 5), dtype=np.float32)
-        u[inside] = own
+        expected = np.zeros((*inside.shape, 5), dtype=np.float32)
+        u = own.reshape(expected.shape) if inside.all() else np.zeros_like(expected)
+        if not inside.all():
+            u[inside] = own
         seen = np.ascontiguousarray(colours, dtype=np.float32)
         shape = tuple(-(-n // CELL) for n in inside.shape)
         sums = np.zeros((*shape, kernel.SUMS))
         kernel.sum_cells(shape[0], CELL, u, seen, inside, gains, low, scale, sums)
         lines = guided(around(sums))
         kernel.expect(shape[0], CELL, u, inside, lines, rounding > 0, expected)
-        chosen, before = seen[inside], expected[inside]
+        chosen, before = texels(seen, inside), texels(expected, inside)
         at = before
         for limit in (0.0, LIMIT):
             decoded, found = self.rgb(_units(at)), np.empty_like(at)
@@ -214,13 +212,6 @@ def _units(coordinates: Map) -> Map:
     from cutis.kernels.warp_kernel import to_units
 
     return np.asarray(to_units(np.ascontiguousarray(coordinates), AXES))
-
-
-def _spread(values: Map, inside: NDArray[np.bool_]) -> Map:
-    """(n, c) values of the texels inside → (c, h, W), 0 elsewhere."""
-    whole = np.zeros((values.shape[1], *inside.shape), dtype=np.float32)
-    whole[:, inside] = values.T
-    return whole
 
 
 def steadied(model: Model, skins: Baked) -> Model:

@@ -13,29 +13,21 @@ ROWS, PIECE = 1, 4096
 """Rows of cells, and texels, that a thread works on at a time."""
 SUMS = 15
 """Per cell: weight, 2 strong maps, their 3 products, 3 weak maps, 6 products of strong and weak."""
-LIKE = 30
-"""Lane of the gains that says how much a colour is that of skin."""
+LIKE, LANES = 30, 32
+"""Lane of the gains that says how much a colour is that of skin, and their number."""
 DARK, ZERO, HALF, ONE = np.float32(1e-6), np.float32(0), np.float32(0.5), np.float32(1)
 TWO = np.float32(2)
 
 
 @compiled(fast=True, inline=True)
-def _place(colour: Any, low: Any, scale: Any, cells: Any, axis: Any) -> Any:
-    """Node below a colour along an axis of the chart (`baked.py`), and how far it is beyond."""
-    red, green, blue = max(colour[0], DARK), max(colour[1], DARK), max(colour[2], DARK)
-    if axis == 0:
-        x = np.sqrt(np.sqrt(green))
-    elif axis == 1:
-        x = red / (red + green)
-    else:
-        x = blue / (blue + green)
-    x = (x - low[axis]) * scale[axis]
-    x = min(max(x, ZERO), np.float32(cells))
-    i = min(int(x), cells - 1)
-    return i, x - np.float32(i)
+def _node(x: Any, low: Any, scale: Any, cells: Any) -> Any:
+    """Node below a coordinate of the chart (`baked.py`), and how far it is beyond."""
+    place = min(max((x - low) * scale, ZERO), np.float32(cells))
+    i = min(int(place), cells - 1)
+    return i, place - np.float32(i)
 
 
-@on_all_cores(ROWS)
+@on_all_cores(ROWS, fast=True)
 def sum_cells(
     start: Any, stop: Any, cell: Any, u: Any, colours: Any, inside: Any, gains: Any, low: Any,
     scale: Any, sums: Any
@@ -47,32 +39,34 @@ def sum_cells(
             for x in range(wide):
                 if not inside[y, x]:
                     continue
-                a, f = _place(colours[y, x], low, scale, gains.shape[0] - 1, 0)
-                b, g = _place(colours[y, x], low, scale, gains.shape[1] - 1, 1)
-                c, h = _place(colours[y, x], low, scale, gains.shape[2] - 1, 2)
-                weight = 0.0
+                red, green = max(colours[y, x, 0], DARK), max(colours[y, x, 1], DARK)
+                blue = max(colours[y, x, 2], DARK)
+                a, f = _node(np.sqrt(np.sqrt(green)), low[0], scale[0], gains.shape[0] - 1)
+                b, g = _node(red / (red + green), low[1], scale[1], gains.shape[1] - 1)
+                c, h = _node(blue / (blue + green), low[2], scale[2], gains.shape[2] - 1)
+                likeness = ZERO
                 for p in range(2):
                     for q in range(2):
-                        for r in range(2):
-                            share = (f if p else ONE - f) * (g if q else ONE - g)
-                            share *= h if r else ONE - h
-                            weight += share * gains[a + p, b + q, c + r, LIKE]
-                into = sums[i, x // cell]
+                        share = (f if p else ONE - f) * (g if q else ONE - g)
+                        near, far = gains[a + p, b + q, c, LIKE], gains[a + p, b + q, c + 1, LIKE]
+                        likeness += share * (near + h * (far - near))
+                weight = float(likeness)
+                j = x // cell
                 m, s = float(u[y, x, 0]), float(u[y, x, 1])
-                into[0] += weight
-                into[1] += weight * m
-                into[2] += weight * s
-                into[3] += weight * m * m
-                into[4] += weight * m * s
-                into[5] += weight * s * s
+                sums[i, j, 0] += weight
+                sums[i, j, 1] += weight * m
+                sums[i, j, 2] += weight * s
+                sums[i, j, 3] += weight * m * m
+                sums[i, j, 4] += weight * m * s
+                sums[i, j, 5] += weight * s * s
                 for k in range(3):
                     w = weight * u[y, x, 2 + k]
-                    into[6 + k] += w
-                    into[9 + k] += w * m
-                    into[12 + k] += w * s
+                    sums[i, j, 6 + k] += w
+                    sums[i, j, 9 + k] += w * m
+                    sums[i, j, 12 + k] += w * s
 
 
-@on_all_cores(ROWS)
+@on_all_cores(ROWS, fast=True)
 def expect(
     start: Any, stop: Any, cell: Any, u: Any, inside: Any, lines: Any, fine: Any, out: Any
 ) -> None:  # fmt: skip
@@ -115,7 +109,7 @@ def expect(
             out[y, x, 0], out[y, x, 1] = m, s
 
 
-@on_all_cores(PIECE)
+@on_all_cores(PIECE, fast=True)
 def correct(
     start: Any, stop: Any, colours: Any, expected: Any, at: Any, seen: Any, own: Any, gains: Any,
     low: Any, scale: Any, limit: Any, out: Any
@@ -126,20 +120,22 @@ def correct(
     to 29, are those of the colour. With a `limit` above 0, skins whose colour is off by more than
     `limit` (c̄ + 0.01)^⅔ go back to `own` (n, 5).
     """
-    line, wrong = np.empty(30, np.float32), np.empty(3, np.float32)
+    line, wrong = np.empty(LANES, np.float32), np.empty(3, np.float32)
     for n in range(start, stop):
-        a, f = _place(colours[n], low, scale, gains.shape[0] - 1, 0)
-        b, g = _place(colours[n], low, scale, gains.shape[1] - 1, 1)
-        c, h = _place(colours[n], low, scale, gains.shape[2] - 1, 2)
-        for k in range(30):
-            line[k] = ZERO
-        for p in range(2):
-            for q in range(2):
-                for r in range(2):
-                    share = (f if p else ONE - f) * (g if q else ONE - g) * (h if r else ONE - h)
-                    node = gains[a + p, b + q, c + r]
-                    for k in range(30):
-                        line[k] += share * node[k]
+        red, green, blue = (
+            max(colours[n, 0], DARK), max(colours[n, 1], DARK), max(colours[n, 2], DARK)
+        )  # fmt: skip
+        a, f = _node(np.sqrt(np.sqrt(green)), low[0], scale[0], gains.shape[0] - 1)
+        b, g = _node(red / (red + green), low[1], scale[1], gains.shape[1] - 1)
+        c, h = _node(blue / (blue + green), low[2], scale[2], gains.shape[2] - 1)
+        e, d, o = ONE - f, ONE - g, ONE - h
+        for k in range(LANES):
+            line[k] = (
+                e * d * (o * gains[a, b, c, k] + h * gains[a, b, c + 1, k])
+                + e * g * (o * gains[a, b + 1, c, k] + h * gains[a, b + 1, c + 1, k])
+                + f * d * (o * gains[a + 1, b, c, k] + h * gains[a + 1, b, c + 1, k])
+                + f * g * (o * gains[a + 1, b + 1, c, k] + h * gains[a + 1, b + 1, c + 1, k])
+            )
         off, mean = ZERO, ZERO
         for k in range(3):
             wrong[k] = colours[n, k] - seen[n, k]

@@ -4,6 +4,7 @@ A job is made of parsed values and run by whoever wants it done: the command lin
 renderer's add-on. All of them get the same results, bit for bit.
 """
 
+from cutis.jobs.delta import DeltaJob
 from cutis.jobs.edit import Edited, EditJob
 from cutis.jobs.edit_frames import EditFramesJob
 from cutis.jobs.estimate import EstimateJob
@@ -20,6 +21,7 @@ __all__ = [
     "Cancel",
     "Cancelled",
     "CaptureFiles",
+    "DeltaJob",
     "EditFramesJob",
     "EditJob",
     "Edited",

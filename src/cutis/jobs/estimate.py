@@ -55,7 +55,7 @@ class EstimateJob:
     `output_colorspace` is that of NAME.model.exr, None for linear sRGB. `half` stores maps in half
     the size, `sigma` adds standard deviations and confidence where the model knows them, `page`
     adds NAME.report.html. `orientation` "ignore" keeps pictures in the order they are stored in,
-    whatever their tag says. Without `steady` every texel is found by itself. `again` makes anew
+    whatever their tag says. `steady` lets models look at neighbours. `again` makes anew
     what is there, also what was made otherwise.
     """
 
@@ -71,7 +71,7 @@ class EstimateJob:
     sigma: bool = True
     page: bool = False
     orientation: Orientation = "auto"
-    steady: bool = True
+    steady: bool = False
     again: bool = field(default=False, metadata={"result": False})
 
     def __post_init__(self) -> None:

@@ -18,6 +18,8 @@ from cutis.looks.pictures import PicturePart, RegionsPart
 from cutis.looks.procedural import BlotchesPart, FrecklesPart, PatchesPart
 from cutis.looks.ranges import RangePart
 from cutis.looks.strokes import Stroke, StrokesPart
+from cutis.looks.tone import Like, Tone, tone_of
+from cutis.looks.tone_like import tone_look
 
 __all__ = [
     "Blend",
@@ -27,6 +29,7 @@ __all__ = [
     "Floor",
     "FrecklesPart",
     "Layer",
+    "Like",
     "Look",
     "MaskPart",
     "Multiply",
@@ -39,7 +42,10 @@ __all__ = [
     "Soften",
     "Stroke",
     "StrokesPart",
+    "Tone",
     "asked",
     "nothing",
     "presets",
+    "tone_look",
+    "tone_of",
 ]

@@ -14,6 +14,7 @@ from pydantic import Field, PrivateAttr, ValidationError
 from cutis.errors import CutisError
 from cutis.looks.document import Part, Share, complaint
 from cutis.looks.edits import edit_of
+from cutis.looks.flags import as_flags
 from cutis.looks.folder import Folder
 from cutis.looks.layer import GIVEN, Layer, LayerOnFace, Text
 from cutis.looks.masks import MaskPart, PaintedPart
@@ -221,9 +222,7 @@ class Look(Part, Recipe):
 
     def as_flags(self) -> tuple[str, ...]:
         """Arguments of `cutis edit` that do the same; CutisError where flags cannot say it."""
-        from cutis.looks.flags import as_flags
-
-        return as_flags(self)
+        return as_flags(self._own_layers(), self._label, self._folder.path)
 
     @classmethod
     def published(cls) -> dict[str, Any]:

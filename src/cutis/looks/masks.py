@@ -67,6 +67,11 @@ class MaskPart(Part, abc.ABC):
         return self
 
     @property
+    def stands_in(self) -> bool:
+        """Whether a painted mask takes its place."""
+        return self.procedural
+
+    @property
     def placed(self) -> bool:
         """Whether it depends on where a texel is or on its neighbours, as all but ranges do."""
         return True

@@ -45,6 +45,12 @@ class BlotchesPart(MaskPart):
         default=1.0, description="Width of their edges: 0.1 is an outline, 2 a gentle drift."
     )
     seed: Seed = 1
+    stand_in: bool = Field(default=False, description="A painted mask takes its place.")
+
+    @property
+    def stands_in(self) -> bool:
+        """Whether a painted mask takes its place."""
+        return self.stand_in
 
     def on_face(self, face: Face, folder: Folder) -> Cover:
         """The blotches of this tile."""

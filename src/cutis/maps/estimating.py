@@ -99,7 +99,7 @@ def estimate(
     model: Model | str = DEFAULT,
     illuminant: LightLike = "D65",
     sigma: bool = True,
-    steady: bool = True,
+    steady: bool = False,
 ) -> Estimate:
     """Skin maps of a texture, of its file, or of an (H, W, 3) array of linear sRGB.
 
@@ -118,8 +118,8 @@ def estimate(
     sigma
         Adds standard deviations and confidence where the model knows them.
     steady
-        Lets models that can look at neighbours, so that weak maps keep still (`inverse.steady`);
-        without, every texel is found by itself.
+        Lets models that can look at neighbours, so that melanin type and oxygenation keep still
+        (`inverse.steady`); without, every texel is found by itself.
 
     Raises
     ------

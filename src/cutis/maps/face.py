@@ -11,7 +11,7 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from cutis.errors import CutisError
 from cutis.maps.changes import Change, Recipe
@@ -76,7 +76,10 @@ class Source(Protocol):
 
 See = Callable[[slice, "SkinMaps"], None]
 """Takes rows, and their maps."""
-Memo = dict[tuple[int, ...], tuple[tuple[Recipe, ...], Quantiles]]
+Memo = dict[tuple[Any, ...], tuple[Any, Any]]
+"""What was found of a face with something done to it: what that is of, so that its identity does
+not come again, and the finding."""
+Found = TypeVar("Found")
 
 
 class Face:
@@ -201,15 +204,36 @@ class Face:
             count -= 1
         return self.before(count)._quantiles().percentile(name, share)
 
-    def _quantiles(self) -> Quantiles:
-        key = tuple(map(id, self._done))  # kept with what they are of, so that no id comes again
+    def once(self, owner: object, name: str, find: Callable[[], Found]) -> Found:
+        """What `find` gives, worked out only once for all tiles of a set as they stand.
+
+        `owner` and `name` say what it is.
+        """
+        key = (*map(id, self._done), id(owner), name)
         if key not in self._memo:
+            self._memo[key] = (self._done, owner), find()
+        result: Found = self._memo[key][1]
+        return result
+
+    def over_set(
+        self, owner: object, name: str, find: Callable[["Face"], Found]
+    ) -> tuple[Found, ...]:
+        """What `find` gives of each tile of the set, in order; worked out only once."""
+
+        def all_tiles() -> tuple[Found, ...]:
             found = []
             for number in self.tiles:
                 with self.opened(number) as face:
-                    found.append(face._own())
-            self._memo[key] = self._done, Quantiles.together(found)
-        return self._memo[key][1]
+                    found.append(find(face))
+            return tuple(found)
+
+        return self.once(owner, name, all_tiles)
+
+    def _quantiles(self) -> Quantiles:
+        def together() -> Quantiles:
+            return Quantiles.together(self.over_set(None, "quantiles", Face._own))
+
+        return self.once(None, "all quantiles", together)
 
     def _own(self) -> Quantiles:
         known = self._source.known

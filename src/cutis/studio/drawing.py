@@ -120,7 +120,7 @@ class Drawer:
         return Drawn(weight[_inner(wide, rect)][..., None], level.number, rect)
 
     def values(self, region: Region, look: Look, kind: str, name: str, coarser: int = 0) -> Drawn:
-        """A map with the look in it, or σ or confidence of the estimate: (h, w, 1), NaN off skin."""
+        """A map with the look in it, or σ or confidence as estimated: (h, w, 1), NaN off skin."""
         level, rect = self.place(region, coarser)
         if kind == "map":
             _, after = self.maps(level, rect, look)

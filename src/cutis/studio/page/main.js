@@ -36,6 +36,10 @@ class Studio {
     /** @type {Face | null} */
     this.face = null;
     this.file = 0;
+    this.sent = 0;
+    this.left = 0;
+    /** @type {import("./types.js").Parameter[]} */
+    this.parameters = [];
     /** @type {Op | null} what is drawn as if it were done */
     this.preview = null;
     this.coarse = false;

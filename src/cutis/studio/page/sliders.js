@@ -18,7 +18,7 @@ export class Row extends EventTarget {
   constructor(known, span) {
     super();
     this.known = known;
-    [this.usual] = span;
+    this.usual = span[0];
     this.do = this.usual;
     /** @type {Track} */
     this.track = { values: [], colours: [] };
