@@ -19,9 +19,9 @@ Check = Callable[[Evidence, Limits], Iterator[Finding]]
 
 CHECKS: Sequence[tuple[str, Check]] = (
     ("scale", content.scale),
+    ("mask", content.mask),
     ("size", content.amount),
     ("orientation", orientation.check),
-    ("mask", content.mask),
     ("colour-space", colour_space.check),
     ("not-skin", content.skin),
     ("exposure", calibration.exposure),

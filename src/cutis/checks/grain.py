@@ -23,23 +23,28 @@ def windows(seen: Evidence) -> Iterator[tuple[int, int, Floats]]:
 
 def blocks(seen: Evidence, limits: Limits) -> Iterator[Finding]:
     """Steps at every eighth column and row, beyond those between."""
-    steps = block_steps(list(windows(seen)))
+    steps, share = block_steps(list(windows(seen)))
     level = graded(steps, limits["note"], limits["finding"])
+    if steps >= limits["smooth"] and share >= limits["share"]:
+        level = "finding"  # on smooth skin the eye sees lower steps
     if level is not None:
         yield Finding(
             "jpeg-blocks", level,
             f"JPEG has left blocks: their borders are {steps:.1f} codes of 255 higher than what is "
             "between.",
             "Take the original, or save with a higher quality: maps show blocks before eyes do.",
-            {"step": steps, "note": limits["note"], "limit": limits["finding"]},
+            {"step": steps, "share": share, "note": limits["note"], "limit": limits["finding"]},
         )  # fmt: skip
 
 
-def block_steps(parts: list[tuple[int, int, Floats]]) -> float:
-    """How much steps at multiples of 8 exceed those between, in codes; the lesser direction."""
+def block_steps(parts: list[tuple[int, int, Floats]]) -> tuple[float, float]:
+    """How much steps at multiples of 8 exceed those between, in codes; the lesser direction.
+
+    The second number is the same as a multiple of the mean step.
+    """
     found = []
     for axis in (0, 1):
-        sums, counts = np.zeros(8), np.zeros(8)
+        sums, counts, whole = np.zeros(8), np.zeros(8), 0.0
         for top, left, codes in parts:
             luma = codes @ LUMA
             lines = luma if axis else luma.T
@@ -49,12 +54,14 @@ def block_steps(parts: list[tuple[int, int, Floats]]) -> float:
             more = step[:, 1:-1] - 0.5 * (step[:, :-2] + step[:, 2:])
             phase = ((left if axis else top) + 2 + np.arange(more.shape[1])) % 8
             np.add.at(sums, phase, more.sum(axis=0))
+            whole += float(step[:, 1:-1].sum())
             np.add.at(counts, phase, float(len(more)))
         if not counts.all():
-            return 0.0
+            return 0.0, 0.0
         means = sums / counts
         highest = int(means.argmax())
-        found.append(float(means[highest] - np.median(np.delete(means, highest))))
+        excess = float(means[highest] - np.median(np.delete(means, highest)))
+        found.append((excess, excess * float(counts.sum()) / max(whole, 1e-9)))
     return min(found)
 
 
