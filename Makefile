@@ -80,5 +80,5 @@ $(BLENDER): src/cutis/data/blender/constraints.txt | $(CORE)
 
 $(FULL): pyproject.toml constraints.txt
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(INSTALL) -e '.[cluster,dev,docs,materialx,mitsuba,onnx,train]'
+	$(INSTALL) -e '.[browser,cluster,dev,docs,materialx,mitsuba,onnx,studio,train]'
 	@touch $(CORE) $@

@@ -1,9 +1,10 @@
-"""Rebuilds the tables of src/cutis/data/albedo: run `python -m studies.build_albedo_table`.
+"""Rebuilds the tables of src/cutis/data/albedo: `python -m studies.build_albedo_table [TISSUE …]`.
 
-aliaga2022.npz and measured2026.npz, spectra from the exact solver, the same names with -rare,
-those with rare chromophores, and with -rgb, the colours of all skins.
+TISSUE.npz, spectra from the exact solver, the same names with -rare, those with rare chromophores,
+and with -rgb, the colours of all skins.
 """
 
+import sys
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -14,14 +15,14 @@ from rich.progress import Progress
 from cutis.albedo import AlbedoSpace
 from cutis.albedo.colour_table import build_colours, save_colours
 from cutis.albedo.spectral_table import SpectralTable, build, save, table_file
-from cutis.optics import TISSUES, Tissue, with_rare_chromophores
+from cutis.optics import TISSUES, Tissue, tissue_named, with_rare_chromophores
 from studies.generated import record
 
 FOLDER = Path(__file__).parents[1] / "src" / "cutis" / "data" / "albedo"
 
 
 def main() -> None:
-    for tissue in TISSUES.values():
+    for tissue in map(tissue_named, sys.argv[1:] or TISSUES):
         rare = with_rare_chromophores(tissue)
         write(table_file(rare), partial(save, solved(rare)))
         table = solved(tissue)

@@ -7,16 +7,18 @@ import sys
 from pathlib import Path
 
 from cutis.apps.train import train
-from cutis.inverse.shipped import EXACT, MEASURED
+from cutis.inverse.shipped import TISSUE_OF
 from studies.generated import record
 
 WEIGHTS = Path(__file__).parents[1] / "src" / "cutis" / "data" / "weights"
 
 
 def main() -> None:
-    for recipe in sys.argv[1:] or (MEASURED, EXACT):
+    for recipe in sys.argv[1:] or TISSUE_OF:
         train(recipe, WEIGHTS)
-        record(*sorted(set(WEIGHTS.glob(f"{recipe}*.npz")) - {WEIGHTS / f"{recipe}-prior.npz"}))
+        record(
+            *(f for f in (WEIGHTS / f"{recipe}{end}.npz" for end in ("", "-trust")) if f.is_file())
+        )
 
 
 if __name__ == "__main__":

@@ -39,12 +39,19 @@ MANIFEST = ROOT / "docs" / "generated.json"
 MAKERS = {
     "studies.build_colour_tables": ["src/cutis/data/colour/*.csv"],
     "studies.build_albedo_table": ["src/cutis/data/albedo/*.npz"],
-    "studies.train_prior": ["src/cutis/data/weights/measured2026-prior.npz"],
+    "studies.train_prior": ["src/cutis/data/weights/*-prior.npz"],
     "studies.build_weights": [
         "src/cutis/data/weights/measured2026.npz",
+        "src/cutis/data/weights/measured2026b.npz",
+        "src/cutis/data/weights/measured2026b-trust.npz",
         "src/cutis/data/weights/measured2026-trust.npz",
         "src/cutis/data/weights/aliaga2022-exact.npz",
     ],
+    "studies.build_tones": [
+        "src/cutis/data/tones/*.csv", "docs/tones.md#path", "docs/tones.md#halves",
+    ],
+    "studies.tone_accuracy": ["docs/tones.md#tones*", "docs/images/tones.jpg"],
+    "studies.preset_sheet": ["docs/presets.md#presets", "docs/images/presets.jpg"],
     "studies.build_appearance": ["src/cutis/data/page/*.csv", "src/cutis/data/page/*.ttf"],
     "studies.albedo_accuracy": ["docs/albedo.md#*"],
     "studies.albedo_inversion": ["docs/subsurface.md#*", "docs/images/subsurface.png"],
@@ -55,6 +62,7 @@ MAKERS = {
     "studies.illuminant_accuracy": ["docs/colour.md#*"],
     "studies.kubelka_munk_accuracy": ["docs/models.md#kubelka*"],
     "studies.light_alternatives": ["docs/decisions/0009-illuminants.md#*"],
+    "studies.check_faults": ["docs/checks.md#*"],
     "studies.lut_accuracy": ["docs/lut.md#*"],
     "studies.model_accuracy": [
         "docs/models.md#recovery", "docs/models.md#smooth", "docs/models.md#loop",
@@ -62,6 +70,7 @@ MAKERS = {
     "studies.monte_carlo_accuracy": ["docs/transport.md#walks"],
     "studies.readme_picture": ["docs/images/face.jpg"],
     "studies.render_grid": ["docs/renders/*.jpg", "docs/render.md#*"],
+    "studies.steady_accuracy": ["docs/models.md#steady_*"],
     "studies.transport_convergence": [
         "docs/transport.md#convergence", "docs/transport.md#published",
         "docs/transport.md#kubelka",

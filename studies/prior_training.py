@@ -29,7 +29,7 @@ from cutis.colour import ita, reflectance_to_rgb
 from cutis.inverse.fit import logit
 from cutis.inverse.prior import TOLERANCE, SkinPrior, log_colours, unit_slopes
 from cutis.inverse.spectral_fit import SpectralFitter
-from cutis.optics import Tissue, from_coordinates, to_coordinates
+from cutis.optics import MEASURED2026B, Tissue, from_coordinates, to_coordinates
 
 Array = NDArray[np.float64]
 ITA_BANDS = (-30.0, 10.0, 28.0, 41.0, 55.0)
@@ -38,8 +38,8 @@ EDGE = 0.1
 """Fitted coordinates this near to an end of their range count as this far, so that logits stay."""
 SLACK = 0.02
 """Added to the covariance of logits around the means."""
-PULL = 0.02
-"""Weight of the pull to fitted skins, over the loss."""
+PULL, PULLS = 0.02, {MEASURED2026B.name: 0.004}
+"""Weight of the pull to fitted skins, over the loss, and that of tissues with one of their own."""
 INSIDE = 0.99
 """Share of measured skins within whose distance colours are those of measured skins."""
 ITERATIONS, CONVERGED = 12, 1e-4
@@ -132,6 +132,7 @@ class _Learner:
     ) -> None:
         self.skins, self.fitted, self.doubt = skins, fitted, doubt
         self.freedom = np.asarray(freedom, dtype=np.float64)
+        self.pull = PULLS.get(tissue.name, PULL)
         self.space: AlbedoSpace = albedo_space(tissue)
         self.sampled = SampledSpace(self.space, skins.wavelengths)
         self.colours = skins.albedo.astype(np.float32)
@@ -177,7 +178,7 @@ class _Learner:
         residual = self._residuals(prior, rows)
         rms = np.sqrt((residual**2).mean(axis=1))
         cost, pulled = w @ rms, 0.0
-        pull = PULL * cost * np.kron(terms.T @ (terms * w[:, None]), prior.precision)
+        pull = self.pull * cost * np.kron(terms.T @ (terms * w[:, None]), prior.precision)
         for _ in range(ITERATIONS):
             slope = self._slopes(prior, rows)
             weight = w / np.maximum(rms, 1e-3) / residual.shape[1]

@@ -10,14 +10,24 @@ from pathlib import Path
 
 import numpy as np
 
-from cutis.optics import ALIAGA2022, MEASURED2026, NAMES
+from cutis.optics import NAMES
 from studies.figures.measured import BANDS, GROUPS, NIST, ORIGINS, read_skins
 from studies.figures.section import table
 from studies.figures.subjects import data_folder
 from studies.generated import record
 from studies.pages import DOCS, rewrite
 from studies.validation_plots import BAND_NAMES, PLOTS, draw
-from studies.validation_study import FOLDS, LEARNED, LIGHTS, PER_BAND, Study, study
+from studies.validation_study import (
+    CALIBRATED,
+    FOLDS,
+    JUDGED,
+    LEARNED,
+    LIGHTS,
+    PER_BAND,
+    TISSUES,
+    Study,
+    study,
+)
 
 Array = np.ndarray
 HELD_OUT = f"{LEARNED}, origins left out"
@@ -48,17 +58,17 @@ def worst_bias(wrong: Array) -> tuple[float, float]:
 
 
 def fit_table(found: Study, named: dict[str, Array], what: str) -> str:
-    """Mean RMSE and worst bias of both tissues."""
+    """Mean RMSE and worst bias of all tissues."""
     rows = []
     for label, of in named.items():
         row = [label, str(of.sum())]
-        for tissue in (ALIAGA2022, MEASURED2026):
+        for tissue in TISSUES:
             spectra = found.fits[tissue.name]
             bias, at = worst_bias((spectra - found.skins.spectra)[of])
             row += [f"{found.rmse(spectra)[of].mean():.4f}", f"{bias:+.4f} at {at:g}"]
         rows.append(row)
-    both = [c for t in (ALIAGA2022, MEASURED2026) for c in (f"`{t.name}`: RMSE", "worst bias, nm")]
-    return table([what, "skins", *both], rows)
+    every = [c for t in TISSUES for c in (f"`{t.name}`: RMSE", "worst bias, nm")]
+    return table([what, "skins", *every], rows)
 
 
 def spectrum_table(found: Study) -> str:
@@ -148,7 +158,7 @@ def fairness_table(found: Study, what: str) -> str:
 def summary_table(found: Study) -> str:
     """What was aimed at, and what came out."""
     of, bands = found.issa, parts(found, "band")
-    fitted = found.fits[MEASURED2026.name]
+    fitted = found.fits[JUDGED.name]
     bias, at = worst_bias((fitted - found.skins.spectra)[of])
     light = found.relit(found.implied[HELD_OUT], "A")
     inside = {split: found.inside(found.held[split]) for split in ("subject", "origin")}
@@ -196,6 +206,25 @@ def summary_table(found: Study) -> str:
     )
 
 
+def person_table(found: Study) -> str:
+    """How much skins of one face differ, over how much all faces do, by parameter."""
+    rows = []
+    for tissue in CALIBRATED:
+        within, between = found.persons[tissue.name]
+        shares = (f"{w:.2f} / {b:.2f} = {w / b:.2f}" for w, b in zip(within, between, strict=True))
+        rows.append([f"`{tissue.name}`", *shares])
+    return table(["tissue", *NAMES], rows)
+
+
+def odd_table(found: Study) -> str:
+    """Fits to every other wavelength, judged on those in between."""
+    rows = [
+        [f"`{name}`", f"{rmse:.4f}", f"{bias:+.4f} at {at:g}"]
+        for name, (rmse, bias, at) in found.odd.items()
+    ]
+    return table(["tissue", "mean RMSE", "worst bias, nm"], rows)
+
+
 def scope(found: Study) -> str:
     """How many skins of whom, and how much was learned on."""
     skins, people = found.skins, len(set(found.skins.subjects[found.issa]))
@@ -220,6 +249,8 @@ def tables(found: Study) -> dict[str, str]:
         ),
         "fits_bands": fit_table(found, parts(found, "band"), "ITA° band"),
         "fits_origins": fit_table(found, parts(found, "origin"), "origin"),
+        "odd": odd_table(found),
+        "persons": person_table(found),
         "spectra": spectrum_table(found),
         "lights": light_table(found),
         **coverage_tables(found),

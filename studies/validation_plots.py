@@ -12,9 +12,9 @@ from matplotlib.patches import Patch
 from PIL import Image
 
 from cutis.colour import encode_srgb
-from cutis.optics import ALIAGA2022, MEASURED2026, PARAMETERS
+from cutis.optics import ALIAGA2022, PARAMETERS
 from studies.figures.measured import BANDS, GROUPS, ORIGINS
-from studies.validation_study import LEARNED, LEVELS, Study
+from studies.validation_study import JUDGED, LEARNED, LEVELS, Study
 
 Array = np.ndarray
 BAND_NAMES = ("dark", "brown", "tan", "intermediate", "light", "very light")
@@ -64,7 +64,7 @@ def band_colours(study: Study) -> dict[int, Array]:
 def examples(study: Study) -> Figure:
     """A median and a badly fitted skin of every group, measured and fitted."""
     figure = Figure(figsize=(WIDTH, 4.9), layout="constrained")
-    rmse = study.rmse(study.fits[MEASURED2026.name])
+    rmse = study.rmse(study.fits[JUDGED.name])
     groups = [g for g in GROUPS if (study.skins.groups[study.issa] == g).any()]
     panels = figure.subplots(2, 4, sharex=True, sharey=True).ravel()
     for axes, group in zip(panels, groups, strict=False):
@@ -77,7 +77,7 @@ def examples(study: Study) -> Figure:
             axes.plot(
                 BANDS, study.fits[ALIAGA2022.name][i], color="#9a948d", linewidth=1, linestyle="--"
             )
-            axes.plot(BANDS, study.fits[MEASURED2026.name][i], color=INK, linewidth=1.2)
+            axes.plot(BANDS, study.fits[JUDGED.name][i], color=INK, linewidth=1.2)
             axes.plot(
                 BANDS, study.skins.spectra[i], marker, color=colour, markersize=4.2,
                 markeredgecolor=INK, markeredgewidth=0.4,
@@ -102,7 +102,7 @@ def examples(study: Study) -> Figure:
     figure.legend(
         handles,
         ["measured, median RMSE of the group", "measured, 95th percentile",
-         "fit, measured2026", "fit, aliaga2022"],
+         f"fit, {JUDGED.name}", "fit, aliaga2022"],
         loc="outside upper center", ncols=4,
     )  # fmt: skip
     return figure
@@ -112,7 +112,7 @@ def residuals(study: Study) -> Figure:
     """Mean residual by wavelength of every band, for both tissues."""
     figure, colours = Figure(figsize=(WIDTH, 3.6), layout="constrained"), band_colours(study)
     panels = figure.subplots(1, 2, sharey=True)
-    for axes, tissue in zip(panels, (ALIAGA2022, MEASURED2026), strict=True):
+    for axes, tissue in zip(panels, (ALIAGA2022, JUDGED), strict=True):
         wrong = study.fits[tissue.name] - study.skins.spectra
         axes.axhspan(-0.003, 0.003, color="#f1efe8", zorder=0)
         axes.axhline(0, color="#b8b0a8", linewidth=0.8)

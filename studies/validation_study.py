@@ -11,25 +11,35 @@ from cutis.albedo import albedo_space
 from cutis.albedo.sampled import SampledSpace
 from cutis.colour import delta_e, reflectance_to_rgb, spectrum_to_rgb, upsample
 from cutis.colour.observer import wavelengths
-from cutis.inverse import SpectralFitter
+from cutis.inverse import SpectralFitter, load_model
 from cutis.inverse.prior import unit_slopes
 from cutis.inverse.shipped import EXACT
-from cutis.maps import DEFAULT, load_model
-from cutis.optics import ALIAGA2022, MEASURED2026, Tissue, from_coordinates, to_coordinates
-from studies.figures.measured import BANDS, NIST, ArchivedSkins
+from cutis.optics import (
+    ALIAGA2022,
+    MEASURED2026,
+    MEASURED2026B,
+    Tissue,
+    from_coordinates,
+    to_coordinates,
+)
+from studies.figures.measured import BANDS, FACE_SITES, NIST, ArchivedSkins
 from studies.prior_training import train_prior
 
 Array = np.ndarray
-TISSUES = (ALIAGA2022, MEASURED2026)
-"""The last one gives the parameters that intervals are judged by."""
-MODELS = tuple(dict.fromkeys((DEFAULT, EXACT, "aliaga2022")))
+TISSUES = (ALIAGA2022, MEASURED2026, MEASURED2026B)
+"""Tissues whose fits are told; intervals are judged by the parameters that the last one gives."""
+CALIBRATED = TISSUES[1:]
+JUDGED = TISSUES[-1]
+MODELS = (*(t.name for t in CALIBRATED), EXACT, "aliaga2022")
 PER_BAND = 600
 """Skins of a band of ITA° that a prior of the validation is trained on, at most."""
 FOLDS = 5
 LIGHTS = ("A", "FL11", "LED-B3")
 LEVELS = (0.5, 0.68, 0.8, 0.9, 0.95)
 """Nominal shares of intervals."""
-LEARNED = "cutis `measured2026`"
+LEARNED = f"cutis `{JUDGED.name}`"
+FARTHEST_LOGIT = 6.2
+"""Bound on logits of fitted parameters where people are compared: fits that end at an end."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,12 +61,17 @@ class Study:
     fits: dict[str, Array] = field(default_factory=dict)
     """Spectra fitted by a tissue."""
     true: Array = field(default_factory=lambda: np.empty((0, 5)))
-    """(n, 5) parameters that explain the whole spectra, by MEASURED2026."""
+    """(n, 5) parameters that explain the whole spectra, by JUDGED."""
+    persons: dict[str, tuple[Array, Array]] = field(default_factory=dict)
+    """By tissue, standard deviations (5,) of logits within a person's face and between faces."""
+    odd: dict[str, tuple[float, float, float]] = field(default_factory=dict)
+    """By tissue, of fits to every other wavelength judged on the others: mean RMSE, worst bias, at
+    nm."""
     implied: dict[str, Array] = field(default_factory=dict)
     """Spectra by method, from RGB alone."""
     held: dict[str, Held] = field(default_factory=dict)
     loop: Array = field(default_factory=lambda: np.empty(0))
-    """(n,) ΔE00 of the default's closed loop."""
+    """(n,) ΔE00 of the closed loop of the model of JUDGED."""
 
     @property
     def issa(self) -> Array:
@@ -88,8 +103,11 @@ def study(skins: ArchivedSkins, per_band: int = PER_BAND, models: Iterable[str] 
     found, colours = Study(skins, per_band), skins.albedo.astype(np.float32)
     for tissue in track(TISSUES, "fits of spectra"):
         fitter = SpectralFitter(BANDS, tissue, specular=skins.specular)
-        found.true = fitter.fit(skins.spectra).values
-        found.fits[tissue.name] = fitter.reflectance(found.true)
+        fit = fitter.fit(skins.spectra)
+        found.true = fit.values
+        found.fits[tissue.name] = fitter.reflectance(fit.values, fit.scattering)
+        found.persons[tissue.name] = within_and_between(skins, fit.values)
+        found.odd[tissue.name] = every_other(skins, tissue)
     for what, parts in (("origin", skins.origins), ("subject", subject_folds(skins))):
         name = f"{LEARNED}, {what}s left out"
         found.implied[name], found.held[what] = left_out(skins, parts, per_band, what)
@@ -101,16 +119,43 @@ def study(skins: ArchivedSkins, per_band: int = PER_BAND, models: Iterable[str] 
         spectra = SampledSpace(albedo_space(model.tissue), BANDS).reflectance(values)
         label = f"cutis `{name}`, as shipped"
         found.implied[label] = measured(skins, spectra)
-        if not len(found.loop):
+        if model.tissue == JUDGED:
             found.loop = delta_e(model.decode(values), colours)
         trust = model.trust(colours)
-        if trust is not None:
+        if trust is not None and model.tissue == JUDGED:
             sigma = trust[:, :5].astype(np.float64)
             slopes = unit_slopes(to_coordinates(values).astype(np.float64))
             found.held["shipped"] = Held(values, sigma, sigma / slopes)
     for name, method in (("Jakob & Hanika 2019", jakob_hanika), ("Mallett & Yuksel 2019", mallett)):
         found.implied[name] = measured(skins, method(colours.astype(np.float64)))
     return found
+
+
+def within_and_between(skins: ArchivedSkins, values: Array) -> tuple[Array, Array]:
+    """Standard deviations (5,) of logits between sites of one face, and between all sites.
+
+    `values` (n, 5) are parameters that were fitted to each spectrum by itself.
+    """
+    face = np.isin(skins.sites, FACE_SITES)
+    u = np.asarray(to_coordinates(values[face]), dtype=np.float64)
+    least = 1 / (1 + np.exp(FARTHEST_LOGIT))
+    u = np.clip(u, least, 1 - least)
+    z = np.log(u / (1 - u))
+    _, of, number = np.unique(skins.subjects[face], return_inverse=True, return_counts=True)
+    means = np.stack([np.bincount(of, column) / number for column in z.T], axis=1)
+    within = np.sqrt(((z - means[of]) ** 2).sum(axis=0) / max((number - 1).sum(), 1))
+    return within, z.std(axis=0)
+
+
+def every_other(skins: ArchivedSkins, tissue: Tissue) -> tuple[float, float, float]:
+    """Fits to every other wavelength, judged on the others, of ISSA: RMSE, worst bias, at nm."""
+    spectra, seen = skins.spectra[skins.origins != NIST], np.arange(len(BANDS)) % 2 == 0
+    some = SpectralFitter(BANDS[seen], tissue, specular=skins.specular).fit(spectra[:, seen])
+    others = SpectralFitter(BANDS[~seen], tissue, specular=skins.specular)
+    wrong = others.reflectance(some.values, some.scattering) - spectra[:, ~seen]
+    bias = wrong.mean(axis=0)
+    at = int(np.abs(bias).argmax())
+    return float(np.sqrt((wrong**2).mean(axis=1)).mean()), float(bias[at]), float(BANDS[~seen][at])
 
 
 def subject_folds(skins: ArchivedSkins) -> Array:
@@ -128,7 +173,7 @@ def evenly(skins: ArchivedSkins, rows: Array, per_band: int) -> Array:
 
 
 def left_out(
-    skins: ArchivedSkins, parts: Array, per_band: int, what: str, tissue: Tissue = MEASURED2026
+    skins: ArchivedSkins, parts: Array, per_band: int, what: str, tissue: Tissue = JUDGED
 ) -> tuple[Array, Held]:
     """Spectra and intervals of the skins of every part by a prior that has not seen the part."""
     space, colours = albedo_space(tissue), skins.albedo.astype(np.float32)

@@ -24,8 +24,10 @@ ROOMS = (
     "looks",
     "luts",
     "report",
+    "checks",
     "render",
     "jobs",
+    "studio",
     "apps",
 )
 """A room may import itself, those before it and SHARED."""

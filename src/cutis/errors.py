@@ -7,8 +7,10 @@ class CutisError(ValueError):
     """Its message is one line for the user: what is wrong and what to do next.
 
     Line breaks become spaces and what does not print becomes its code (`\\x1b`), because messages
-    quote names and texts from files, which may hold anything.
+    quote names and texts from files, which may hold anything. A command ends with `code`.
     """
+
+    code = 1
 
     def __init__(self, message: str) -> None:
         """`message` as it is to be shown."""

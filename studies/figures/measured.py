@@ -21,6 +21,8 @@ ORIGINS = {
     9: "Japan", 10: "China 2", 11: "Saudi Arabia", NIST: "NIST",
 }  # fmt: skip
 """Where skins were measured, by number [issa2025, cooksey2017nist]."""
+FACE_SITES = (2, 3, 4, 6, 8, 9)
+"""Numbers of places on face and neck: cheeks, chin, forehead, neck and nose."""
 GROUPS = {
     "AB": "Arabian", "AF": "African", "CA": "Caucasian", "CN": "Chinese", "IQ": "Iraqi",
     "JP": "Japanese", "SA": "South Asian", "TH": "Thai", "NIST": "NIST",
@@ -30,10 +32,14 @@ GROUPS = {
 
 @dataclass(frozen=True, eq=False)
 class ArchivedSkins(MeasuredSkins):
-    """Measured skins with keys of `ORIGINS` (n,) and of `GROUPS` (n,)."""
+    """Measured skins with keys of `ORIGINS` (n,) and of `GROUPS` (n,), and numbers of sites (n,).
+
+    Sites are those of ISSA's places on the body; -1 where none is known.
+    """
 
     origins: NDArray[np.intp]
     groups: NDArray[np.str_]
+    sites: NDArray[np.intp]
 
     def some(self, rows: ArrayLike) -> "ArchivedSkins":
         """Those of some rows."""
@@ -44,6 +50,7 @@ class ArchivedSkins(MeasuredSkins):
             subjects=self.subjects[kept],
             origins=self.origins[kept],
             groups=self.groups[kept],
+            sites=self.sites[kept],
         )
 
 
@@ -55,18 +62,19 @@ def read_skins(data: Path) -> ArchivedSkins:
     """
     folder = data / "spectra" / "measured"
     spectra, people = [], []
-    for row in csv.DictReader(_lines(folder / "issa_half_a.csv")):
+    for row in csv.DictReader(lines_of(folder / "issa_half_a.csv")):
         if row["qc"] == "0":
             spectra.append([float(row[f"{band:g}"] or "nan") for band in BANDS])
             origin = int(row["origin"])
-            people.append((f"{ORIGINS[origin]} {row['subject']}", origin, row["group"]))
-    header, *lines = _lines(folder / "nist_forearm_half_a.csv")
+            site = int(row["location"] or -1)
+            people.append((f"{ORIGINS[origin]} {row['subject']}", origin, row["group"], site))
+    header, *lines = lines_of(folder / "nist_forearm_half_a.csv")
     table = np.array([[float(cell) for cell in line.split(",")] for line in lines])
     for name, column in zip(header.strip().split(",")[1:], table[:, 1:].T, strict=True):
         spectra.append(np.interp(BANDS, table[:, 0], column))
-        people.append((f"NIST {name}", NIST, "NIST"))
-    subjects, origins, groups = (np.array(column) for column in zip(*people, strict=True))
-    skins = ArchivedSkins(np.array(spectra), BANDS, subjects, SURFACE, origins, groups)
+        people.append((f"NIST {name}", NIST, "NIST", -1))
+    subjects, origins, groups, sites = (np.array(column) for column in zip(*people, strict=True))
+    skins = ArchivedSkins(np.array(spectra), BANDS, subjects, SURFACE, origins, groups, sites)
     return skins.some(np.isfinite(skins.spectra).all(axis=1))
 
 
@@ -75,6 +83,7 @@ def measured_skins(data: Path) -> NDArray[np.float64]:
     return np.asarray((read_skins(data).spectra - SURFACE) / (1 - SURFACE))
 
 
-def _lines(path: Path) -> Iterator[str]:
+def lines_of(path: Path) -> Iterator[str]:
+    """Lines of a table without its comments."""
     with path.open(encoding="utf-8") as file:
         yield from (line for line in file if not line.startswith("#"))

@@ -247,7 +247,7 @@ def test_a_full_disk(command, maps, process, one_line, tmp_path):
         ("melanin\n0.1\n7\n", "skin 2: melanin = 7 is outside its range"),
         ("melanin\ndark\n", "skin 1: could not convert"),
         ("melanin\nnan\n", "skin 1: melanin = nan is outside"),
-        (b"melanin\n\xff\xfe\n", "not a CSV file in UTF-8"),
+        (b"melanin\n\xff\xfe\n", "is no CSV file in UTF-8"),
     ],
 )
 def test_tables_of_skins(text, message, cutis, one_line, tmp_path):

@@ -75,7 +75,10 @@ def test_flags_are_edits_after_presets(maps, cutis, tmp_path):
 
 def test_clamped_texels_are_announced(maps, cutis, tmp_path):
     ended = cutis("edit", maps, "--melanin", "x1e6", "-o", tmp_path / "dark.png")
-    assert "melanin x1e+06, 768 texels clamped to range (100 % of the mask)" in ended.out
+    assert (
+        "melanin x1e+06, 768 texels clamped to range (100.0\N{NO-BREAK SPACE}% of the mask)"
+        in ended.out
+    )
 
 
 def test_painted_mask_and_amount(maps, cutis, tmp_path):

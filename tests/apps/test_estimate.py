@@ -7,6 +7,7 @@ import pytest
 from PIL import Image
 
 import cutis as package
+from cutis.checks import Examined
 from cutis.maps import DEFAULT, estimate, load_maps, load_model
 from cutis.optics import NAMES
 from cutis.report import report
@@ -37,7 +38,7 @@ def test_maps_model_and_report_are_those_of_the_library(estimated):
     assert header["colorspace"] == "lin_rec709"
     found = json.loads((estimated / "face.report.json").read_text("utf-8"))
     said = found.pop("colorspace")
-    assert said == "sRGB (assumed, the file says nothing)"
+    assert said == "sRGB (its sRGB chunk)"
     files, made_from = found.pop("files"), found.pop("made_from")
     assert found == json.loads(json.dumps(report(skin)))
     assert all((estimated / name).is_file() for name in files)
@@ -132,7 +133,11 @@ def test_a_mask_between_the_texels_of_previews(cutis, tmp_path):
     assert (ended.code, ended.out, ended.err) == (0, "", "")
 
 
-def test_sigma_goes_into_maps_pictures_report_and_words(trusting, write_face, cutis, tmp_path):
+def test_sigma_goes_into_maps_pictures_report_and_words(
+    trusting, write_face, cutis, tmp_path, monkeypatch
+):
+    # the confidence of this model is made up, and no judge of the input
+    monkeypatch.setattr("cutis.jobs.estimate.examine", lambda gathered: Examined(()))
     face, out = write_face(tmp_path), tmp_path / "out"
     ended = cutis("estimate", face, "-o", out, "--report")
     assert (ended.code, ended.err) == (0, "")

@@ -59,11 +59,30 @@ def test_the_calibration_of_maps_is_taken(maps, cutis, tmp_path):
     assert np.abs(found[0] - found[2]).max() > 0.01
 
 
-def test_glsl_is_written(cutis, tmp_path):
+def test_the_default_is_written_as_glsl(cutis, tmp_path):
     ended = cutis("export", tmp_path / "decoder.glsl")
     assert (ended.code, ended.err) == (0, "")
+    assert "decoder of measured2026, with its table in decoder.table.f16" in ended.out
+    text = (tmp_path / "decoder.glsl").read_text("ascii")
+    assert "vec3 cutis_albedo(" in text
+    assert "decoder.table.f16" in text
+    assert (tmp_path / "decoder.table.f16").stat().st_size == 3_240_576
+
+
+def test_the_default_is_written_as_onnx(cutis, tmp_path):
+    onnx = pytest.importorskip("onnx", reason="the extra onnx is not installed")
+    ended = cutis("export", tmp_path / "decoder.onnx")
+    assert (ended.code, ended.err) == (0, "")
+    assert "decoder of measured2026" in ended.out
+    model = onnx.load(tmp_path / "decoder.onnx")
+    assert [i.name for i in model.graph.input] == ["skin"]
+
+
+def test_glsl_of_networks_is_written(cutis, tmp_path):
+    ended = cutis("export", tmp_path / "decoder.glsl", "--model", "aliaga2022")
+    assert (ended.code, ended.err) == (0, "")
     assert "decoder of aliaga2022" in ended.out
-    assert "vec3 cutis_albedo(" in (tmp_path / "decoder.glsl").read_text("ascii")
+    assert not (tmp_path / "decoder.table.f16").exists()
 
 
 @pytest.mark.parametrize("half", ["encoder", "decoder"])
@@ -89,7 +108,8 @@ def test_onnx_is_written(half, cutis, tmp_path):
         ("a.lut", ("--preset", "tanning"), ".cube or .clf"),
         ("a.cube", ("--preset", "tanning", "--model", "none"), "unknown model"),
         ("decoder.onnx", ("--preset", "tanning"), "is for networks"),
-        ("decoder.onnx", ("--model", "aliaga2022-exact"), "not a pair of networks"),
+        ("decoder.onnx", ("--model", "kubelka-munk"), "not a pair of networks"),
+        ("encoder.onnx", (), "is no network"),
         ("encoder.glsl", (), "only the decoder"),
     ],
 )

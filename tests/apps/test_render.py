@@ -186,3 +186,38 @@ def test_edits_of_a_texture_need_maps(blender, cutis, maps, tmp_path):
     ended = cutis("render", face, "--melanin", "x2", *SMALL, "-o", tmp_path / "a.png")
     assert ended.code == 1
     assert "cutis estimate" in ended.err
+
+
+def test_a_bundled_head_gets_maps_for_edits(blender, cutis, tmp_path):
+    for flags, name in (((), "a.png"), (("--melanin", "x3"), "b.png")):
+        ended = cutis("render", "--mesh", "makehuman", *flags, *SMALL, "-o", tmp_path / name)
+        assert (ended.code, ended.err) == (0, "")
+        assert "credit: head by the MakeHuman team" in ended.out
+    assert middle(tmp_path / "b.png")[0] < middle(tmp_path / "a.png")[0] - 3
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.png", "b.png"]
+
+
+def test_a_set_of_tiles(blender, cutis, maps, tmp_path):
+    mesh = tmp_path / "two.obj"
+    mesh.write_text(
+        "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\n"
+        "vt 0 0\nvt 1 0\nvt 2 0\nvt 0 1\nvt 1 1\nvt 2 1\nf 1/1 2/2 5/5 4/4\nf 2/2 3/3 6/6 5/5\n"
+    )
+    face = read_texture(maps.with_name("face.exr"))
+    for number, dark in ((1001, 1.0), (1002, 0.6)):
+        tile = face.with_linear(face.linear() * np.float32(dark), np.ones(face.shape, bool))
+        package.write(tile, tmp_path / f"t.{number}.exr")
+    assert cutis("estimate", tmp_path / "t.<UDIM>.exr", "-o", tmp_path).code == 0
+    out = tmp_path / "set.exr"
+    ended = cutis(
+        "render", tmp_path / "t.<UDIM>.skin.exr", "--mesh", mesh, *SMALL, "--light", "furnace",
+        "--melanin", "x1.2", "-o", out,
+    )  # fmt: skip
+    assert (ended.code, ended.err) == (0, "")
+    assert "outside the texture" not in ended.out
+    light = read_texture(out).linear()[20]
+    left, right = light[8:18].mean(), light[22:32].mean()
+    assert right < 0.8 * left
+    ended = cutis("render", tmp_path / "t.<UDIM>.skin.exr", "--export", tmp_path / "material")
+    assert ended.code == 1
+    assert "one tile" in ended.err

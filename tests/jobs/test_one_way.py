@@ -13,8 +13,10 @@ import pytest
 
 import cutis as package
 from cutis.colour import light
+from cutis.inverse import Calibration
 from cutis.jobs import CaptureFiles, EditJob, EstimateJob, ExportJob, FitJob
-from cutis.jobs.render import MaterialJob, RenderJob, Subject
+from cutis.jobs.render import MaterialJob, RenderJob
+from cutis.jobs.subject import Subject
 from cutis.maps import Edit, load_maps, load_model
 from cutis.optics import ALIAGA2022
 from cutis.textures import Texture, colour_space, read_channels, write_texture
@@ -34,8 +36,11 @@ ESTIMATE = {
     "half": ({"half": True}, ("--half",)),
     "sigma": ({"sigma": False}, ("--no-sigma",)),
     "page": ({"page": True}, ("--report",)),
+    "orientation": ({"orientation": "ignore"}, ("--orientation", "ignore")),
+    "steady": ({"steady": True}, ("--steady", "on")),
     "again": ({"again": True}, ("--again",)),
 }
+GAINS = Calibration((1.1, 1.0, 0.9), "given")
 EDIT = {
     "maps": ({}, ()),
     "output": ({}, ()),
@@ -45,6 +50,7 @@ EDIT = {
     "source": ({"source": "face.png"}, ("--source", "face.png")),
     "light": ({"light": "FL11"}, ("--illuminant", "FL11")),
     "model": ({"model": "lookup"}, ("--method", "lookup")),
+    "calibration": ({"calibration": GAINS}, ("--calibration", "1.1,1,0.9")),
     "space": ({"space": "linear"}, ("--output-colorspace", "linear")),
     "save_maps": ({"save_maps": "kept.skin.exr"}, ("--save-maps", "kept.skin.exr")),
 }
@@ -136,7 +142,7 @@ def test_estimate(name, work, cutis):
     same_files(work / "cli", work / "job")
 
 
-@pytest.mark.parametrize("name", ["white", "exposure", "light", "model", "sigma"])
+@pytest.mark.parametrize("name", ["white", "exposure", "light", "model", "sigma", "steady"])
 def test_estimate_in_memory(name, work, cutis):
     values, flags = ESTIMATE[name]
     assert cutis("estimate", "face.png", "--mask", "mask.png", "-o", "cli", "-q", *flags).code == 0

@@ -1,5 +1,6 @@
 """Work that is lost, mixed or stale: none of it counts as done."""
 
+import errno
 import os
 import shutil
 import signal
@@ -15,6 +16,7 @@ from cutis.errors import CutisError
 from cutis.jobs import CaptureFiles, EstimateJob
 from cutis.jobs.results import alone
 from cutis.maps import load_maps
+from cutis.report.previews import Previews
 from cutis.textures import read_texture
 
 MAIN = "from cutis.apps.main import main; main()"
@@ -92,19 +94,25 @@ def test_workers_end_with_their_parent(how, many, tmp_path):
     assert not left
 
 
-def test_a_result_that_failed_midway_is_not_done(many, cutis, tmp_path):
+def test_a_result_that_failed_midway_is_not_done(many, cutis, tmp_path, monkeypatch):
     out = tmp_path / "out"
     for path in many.iterdir():
         if path.name not in ("a.png", "b.png"):
             path.unlink()
     assert cutis("estimate", many, "-o", out, "-q").code == 0
-    (out / "a.sigma.png").unlink()
-    (out / "a.sigma.png").mkdir()  # stands for a full disk
-    ended = cutis("estimate", many, "-o", out, "--exposure", "2", "--again", "-q")
+    write = Previews.write
+
+    def full(self, stem):
+        if stem.name == "a":
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), f"{stem}.sigma.png")
+        return write(self, stem)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Previews, "write", full)
+        ended = cutis("estimate", many, "-o", out, "--exposure", "2", "--again", "-q")
     assert ended.code == 1
     assert "a.sigma.png" in ended.err
     assert not (out / "a.report.json").exists()
-    (out / "a.sigma.png").rmdir()
     ended = cutis("estimate", many, "-o", out, "--exposure", "2")
     assert ended.code == 0
     assert "1 of 2 estimated" in ended.out
@@ -271,7 +279,7 @@ def test_names_that_are_too_long_are_found_first(many, cutis, tmp_path, one_line
     long = many / f"{'x' * 244}.png"
     shutil.copy(many / "a.png", long)
     out = tmp_path / "out"
-    assert "the name is too long" in one_line(cutis("estimate", long, "-o", out))
+    assert "its name is longer than" in one_line(cutis("estimate", long, "-o", out))
     assert not out.exists()
 
 

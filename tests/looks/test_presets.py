@@ -46,7 +46,7 @@ def test_an_unknown_preset_lists_the_known():
     with pytest.raises(CutisError, match=r"unknown preset 'kelp'; known are .*tanning"):
         presets.preset("kelp")
     with pytest.raises(CutisError, match=r"did you mean flushing\?"):
-        presets.preset("flush")
+        presets.preset("flushin")
     with pytest.raises(AttributeError):
         _ = presets.kelp
 

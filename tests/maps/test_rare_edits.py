@@ -154,7 +154,8 @@ def test_sigma_goes_with_them(skin, tmp_path):
 
 
 def test_luts_do_what_edits_do(skin, face_rgb):
-    """Far from the fade, the function of a LUT is the edit."""
+    """Far from the fade, the function of a LUT is the edit of texels that see no neighbours."""
+    skin = estimate(face_rgb, skin.mask, model=skin.model, steady=False)
     inside = skin.mask == 1
     edit = recolouring(presets.jaundice, skin.model)
     got = edit(face_rgb[inside])

@@ -318,6 +318,85 @@ def children(pid: int) -> list[int]:
     return [int(child) for child in found.split()]
 
 
+TWO_TILES = """v 0 0 0
+v 1 0 0
+v 2 0 0
+v 0 1 0
+v 1 1 0
+v 2 1 0
+vt 0 0
+vt 1 0
+vt 2 0
+vt 0 1
+vt 1 1
+vt 2 1
+f 1/1 2/2 5/5 4/4
+f 2/2 3/3 6/6 5/5
+"""
+"""Two squares side by side, the right one on tile 1002."""
+RED, GREEN = (0.8, 0.1, 0.1), (0.1, 0.8, 0.1)
+
+
+@pytest.fixture
+def tiles(tmp_path):
+    """NAME.<UDIM>.exr of two tiles, red and green."""
+    for number, colour in ((1001, RED), (1002, GREEN)):
+        write_exr(tmp_path / f"t.{number}.exr", np.tile(np.float32(colour), (16, 16, 1)))
+    return tmp_path / "t.<UDIM>.exr"
+
+
+def two(tmp_path, blender, colour, text=TWO_TILES):
+    """The pixels of both squares, and what is said of them."""
+    (tmp_path / "two.obj").write_text(text)
+    scene = Scene(base_colour=colour, mesh=tmp_path / "two.obj", light="furnace", subdivision=0,
+                  **PLAIN)  # fmt: skip
+    said = []
+    render([(scene, tmp_path / "out.exr")], blender, note=said.append)
+    pixels = read_exr(tmp_path / "out.exr")
+    return pixels[24, 16, :3], pixels[24, 32, :3], said
+
+
+def test_tiles_of_a_set_are_where_the_mesh_has_them(blender, tiles, tmp_path):
+    left, right, said = two(tmp_path, blender, tiles)
+    np.testing.assert_allclose(left, RED, atol=1e-3)
+    np.testing.assert_allclose(right, GREEN, atol=1e-3)
+    assert said == []
+
+
+def test_what_is_outside_a_texture_is_said(blender, tiles, tmp_path):
+    _, right, said = two(tmp_path, blender, tmp_path / "t.1001.exr")
+    np.testing.assert_allclose(right, RED, atol=1e-3)  # its edge
+    assert len(said) == 1
+    assert "50 % of the mesh" in said[0]
+    assert "tile 1002" in said[0]
+    assert "<UDIM>" in said[0]
+
+
+def test_a_tile_that_is_not_there_is_said(blender, tiles, tmp_path):
+    (tmp_path / "t.1002.exr").unlink()
+    _, _, said = two(tmp_path, blender, tiles)
+    assert ["tile 1002 is not there" in one for one in said] == [True]
+
+
+def test_materials_that_are_dropped_are_named(blender, quarters, tmp_path):
+    text = TWO_TILES.replace("f 1", "usemtl skin\nf 1").replace("f 2", "usemtl teeth\nf 2")
+    text = text.replace("vt 2", "vt 0.5")
+    _, _, said = two(tmp_path, blender, quarters, text)
+    assert len(said) == 1
+    assert "skin, teeth" in said[0]
+
+
+def test_a_broken_mesh_is_one_line_without_a_traceback(blender, tmp_path):
+    write_glb(tmp_path / "square.glb")
+    content = (tmp_path / "square.glb").read_bytes()
+    (tmp_path / "bad.glb").write_bytes(content.replace(b'"bufferView": 1', b'"bufferView": 9'))
+    scene = Scene(mesh=tmp_path / "bad.glb", **PLAIN)
+    with pytest.raises(CutisError, match=r"bad\.glb") as error:
+        render([(scene, tmp_path / "out.exr")], blender)
+    assert "Traceback" not in str(error.value)
+    assert 'File "' not in str(error.value)
+
+
 linux = pytest.mark.skipif(sys.platform != "linux", reason="looks at /proc")
 LONG = {"width": 512, "height": 512, "samples": 4096, "denoise": False}
 

@@ -61,7 +61,8 @@ def test_numbers(skin):
         to_u = parameter(name).to_coordinate
         for key, value in (("p5", low), ("median", median), ("p95", high)):
             assert to_u(row[key]) == pytest.approx(to_u(value), abs=1e-5)
-        counts = np.histogram(values, row["histogram"]["edges"])[0]
+        edges = row["histogram"]["edges"]
+        counts = np.histogram(np.clip(values, edges[0], edges[-1]), edges)[0]
         assert np.abs(np.subtract(row["histogram"]["counts"], counts)).sum() <= 4
         ends = to_u(values) * 65536
         assert found["clamped"][name] == np.mean((ends < 1) | (ends >= 65535))

@@ -64,9 +64,8 @@ class KubelkaMunkSkin:
         below = self.tissue.dermis_absorption(blood, self.oxygenation, lam)
         reduced = self.tissue.reduced_scattering(lam)
         depth = self.thickness * 1e-4  # cm
-        dermis = half_space(
-            *coefficients(below, reduced * self.tissue.dermis_scattering, self.conversion)
-        )
+        under = self.tissue.dermis_reduced_scattering(lam, self.eumelanin)
+        dermis = half_space(*coefficients(below, under, self.conversion))
         if self.epidermis == "absorbing":
             return np.asarray(np.exp(-2.0 * above * depth) * dermis)
         return over(*layer(*coefficients(above, reduced, self.conversion), depth), dermis)

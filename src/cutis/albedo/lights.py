@@ -25,10 +25,10 @@ def skin_conversion(light: LightLike, tissue: Tissue) -> NDArray[np.float64]:
     Of relative squared error least over LIKELY skins of a tissue with the five free parameters.
     Raises CutisError for the lights that `colour.light_conversion` refuses.
     """
-    from scipy.stats import qmc
-
     if np.array_equal(illuminant(light), illuminant("D65")):
         return np.eye(3)
+    from scipy.stats import qmc  # which takes a second to import
+
     low, high = LIKELY.T
     u = qmc.Halton(5, scramble=False).random(SKINS)
     skins = low + (high - low) * u

@@ -80,11 +80,14 @@ class SkinSimulation:
         absorption = np.stack(
             [tissue.absorption(layer, values, lam) for layer in LAYERS], axis=-1
         ).reshape(-1, 2)
-        scattering = np.tile(tissue.scattering(lam), len(skins))
+        above = np.tile(tissue.scattering(lam), len(skins))
+        below = np.broadcast_to(
+            tissue.scattering_below(lam, values["eumelanin"]), (len(skins), BANDS)
+        )
         depth = np.repeat(values["thickness"] * 1e-4, BANDS)
         found = walk_stacks(
             absorption,
-            np.stack([scattering, scattering * tissue.dermis_scattering], axis=-1),
+            np.stack([above, below.ravel()], axis=-1),
             np.tile(tissue.anisotropy(lam), len(skins))[:, None],
             np.stack([depth, np.full(len(depth), np.inf)], axis=-1),
             photons=self.walks.photons,
@@ -118,7 +121,9 @@ class TensorSimulation:
 
     def __post_init__(self) -> None:
         grid_axes(self.shape)
-        if self.walks.tissue.boundary != "matched" or self.walks.tissue.dermis_scattering != 1:
+        tissue = self.walks.tissue
+        one = tissue.dermis_scattering == 1 and not tissue.dermis_by_type
+        if tissue.boundary != "matched" or not one:
             raise CutisError("a tensor is simulated with the matched boundary only")
 
     @property

@@ -19,9 +19,9 @@ from typing import IO
 import numpy as np
 from numpy.typing import NDArray
 
+from cutis.kernels.mixture import WITHOUT, absorption
 from cutis.kernels.splines import along, chebyshev, from_chebyshev
 from cutis.optics import WAVELENGTHS, Parameter, Tissue
-from cutis.optics.absorbers import LAYERS
 from cutis.optics.parameters import THICKNESS
 from cutis.transport import two_layer_albedo
 
@@ -61,19 +61,23 @@ class SpectralTable:
 def axis_ranges(tissue: Tissue) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """(41, 3) lowest and highest μa_e^¼, μa_d^¼ and log t that the parameter ranges reach.
 
-    Absorption is linear in every parameter, so its ends are at ends of these. A thickness that is
+    Absorption, that of the dermis for its scattering at no eumelanin, is linear in every parameter,
+    so its ends are at ends of these. A thickness that is
     the same for all skins has a narrow range around it.
     """
     low, high = [], []
-    for layer in LAYERS:
-        names = {name for absorber in tissue.table(layer) for name in absorber.parameters}
-        blends = {name for absorber in tissue.table(layer) for name in absorber.without}
-        some = [p for p in tissue.every_parameter if p.name in names]
-        corners = np.array(list(product(*(_ends(p, p.name in blends) for p in some))))
-        values = {p.name: corners[:, i] for i, p in enumerate(some)}
-        absorption = tissue.absorption(layer, values, WAVELENGTHS)
-        low.append(np.maximum(absorption.min(0), LEAST) ** 0.25)
-        high.append(absorption.max(0) ** 0.25)
+    recipe, *layers = tissue.mixture(WAVELENGTHS)
+    first = 0
+    for pure in layers:
+        rows = recipe[first : first + len(pure) - 1]
+        first += len(rows)
+        some = np.flatnonzero((rows != 0).any(axis=0))
+        blends = (rows == WITHOUT).any(axis=0)
+        ends = (_ends(tissue.every_parameter[i], bool(blends[i])) for i in some)
+        corners = np.array(list(product(*ends)))
+        found = absorption(corners, rows[:, some], pure)
+        low.append(np.maximum(found.min(0), LEAST) ** 0.25)
+        high.append(found.max(0) ** 0.25)
     ones = np.ones(len(WAVELENGTHS))
     held = dict(tissue.fixed).get("thickness")
     thin, thick = (THICKNESS.low, THICKNESS.high) if held is None else (held / 1.01, held * 1.01)
@@ -107,7 +111,7 @@ def build(tissue: Tissue, progress: Callable[[int, int], None] | None = None) ->
             dimension=tissue.dimension,
             refractive_index=tissue.outer_index,
             count=ORDINATES,
-            dermis_scattering=float(tissue.scattering(WAVELENGTHS)[i]) * tissue.dermis_scattering,
+            dermis_scattering=float(tissue.scattering_below(WAVELENGTHS)[i]),
         )
 
     nodes = np.empty((len(WAVELENGTHS), *NODES))

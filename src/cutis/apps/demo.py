@@ -29,7 +29,7 @@ def demo(
     from cutis.jobs.estimate import EstimateJob
     from cutis.jobs.job import part
     from cutis.jobs.outcome import CaptureFiles
-    from cutis.looks import presets
+    from cutis.looks import tone_look
     from cutis.report.page import write_report
     from cutis.report.previews import previews_of, reduced
     from cutis.textures import read_texture
@@ -45,13 +45,13 @@ def demo(
         (found,) = job.run(part(progress, 0, 2))
         if found.report is None:
             raise CutisError(str(found.failure))
-        tanned = Path(f"{job.stem(capture)}.tanned.png")
+        darker = Path(f"{job.stem(capture)}.darker.png")
         maps = Path(f"{job.stem(capture)}.skin.exr")
-        EditJob(maps, tanned, presets.tanning).run(part(progress, 1, 2))
-        pictures = {**previews_of(maps), "edited": reduced(read_texture(tanned).linear())}
-        notes = ["Edited: tanned, melanin +40 %, all of it pheomelanin.", CREDIT]
+        EditJob(maps, darker, tone_look("ita:-10")).run(part(progress, 1, 2))
+        pictures = {**previews_of(maps), "edited": reduced(read_texture(darker).linear())}
+        notes = ["Edited: the same face in another tone, ITA° -10 (--tone ita:-10).", CREDIT]
         write_report(output / "index.html", found.report, pictures, CAPTURE, notes)
     if not quiet:
         say_one(found.report, capture.face, maps)
-        out.say(f"wrote the tanned face to {tanned}")
+        out.say(f"wrote the face in another tone to {darker}")
         out.say(f"open {output / 'index.html'}")

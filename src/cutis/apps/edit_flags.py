@@ -43,6 +43,7 @@ class Changes:
         """All of it as one look."""
         from cutis.looks import Look
         from cutis.looks.presets import preset
+        from cutis.looks.tone_like import tone_look
         from cutis.maps import parse_edit
 
         whole = Look()
@@ -50,6 +51,8 @@ class Changes:
             values = list(group)
             if flag == "preset":
                 found = [preset(name) for _, name in values]
+            elif flag == "tone":
+                found = [tone_look(text) for _, text in values]
             elif flag == "look":
                 found = [Look.load(path, allow_outside=self.allow_outside) for _, path in values]
             else:
@@ -59,7 +62,7 @@ class Changes:
         return whole
 
 
-KINDS = ("preset", "look")
+KINDS = ("preset", "look", "tone")
 
 
 def edit_flags(command: Callable[..., None]) -> Callable[..., None]:
@@ -72,6 +75,7 @@ def edit_flags(command: Callable[..., None]) -> Callable[..., None]:
     known = (*PARAMETERS, *RARE)
     wanted = [
         _repeated("preset", str, "A look that comes with cutis (cutis edit --help)."),
+        _repeated("tone", str, "Another tone: ita:-20, monk:7, #8d5524, like:OTHER.skin.exr."),
         _repeated("look", Path, "A look to apply, NAME.look.json; may be repeated."),
         *(_repeated(p.name, str, _help(p)) for p in known),
         inspect.Parameter(

@@ -50,6 +50,7 @@ def estimate(
         typer.Option(help="Picture in flat colours, one for each region to report on."),
     ] = None,
     orientation: options.Turning = options.Turn.AUTO,
+    steady: options.Steadiness = options.Switch.OFF,
     udim: Annotated[bool, typer.Option("--udim", help="FACE is one tile of a UDIM set.")] = False,
     sequence: Annotated[
         bool, typer.Option("--sequence", help="All are of one person: share one calibration.")
@@ -86,7 +87,7 @@ def estimate(
         options.exposure_gain(exposure), options.light_of(illuminant),
         options.model_of(model, method, device), options.source_space(colorspace, ocio),
         options.space_of(output_colorspace, ocio), half, not no_sigma, report,
-        orientation.value, again,
+        orientation.value, steady.value == "on", again,
     )  # fmt: skip
     sets = []
     doubts: list[str] = []

@@ -14,8 +14,8 @@ def export(
     output: Annotated[
         Path,
         typer.Argument(
-            help="An edit as NAME.cube or NAME.clf; the networks as decoder.onnx, encoder.onnx or "
-            "decoder.glsl."
+            help="An edit as NAME.cube or NAME.clf; a model as decoder.onnx, decoder.glsl or "
+            "encoder.onnx."
         ),
     ],
     changes: Changes,
@@ -35,11 +35,11 @@ def export(
     ] = None,
     model: Annotated[
         str | None,
-        typer.Option(help="As in estimate; networks are those of aliaga2022 or a .safetensors."),
+        typer.Option(help="As in estimate; encoder.onnx needs one of networks: aliaga2022."),
     ] = None,
     quiet: options.Quiet = False,
 ) -> None:
-    """Write an edit as a LUT, or the networks as ONNX or GLSL, for other programs.
+    """Write an edit as a LUT, or a model as ONNX or GLSL, for other programs.
 
     A LUT is for the capture whose --maps are given, or for captures that need no calibration.
     Colours far from skin pass through.

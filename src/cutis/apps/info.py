@@ -46,6 +46,8 @@ def info(maps: Annotated[Path, typer.Argument(help="Maps, NAME.skin.exr.")]) -> 
     cover = inside / (height * width)
     out.say(f"{maps.name}: {width} × {height} texels, {100 * cover:.1f} % skin")
     gains = ", ".join(f"{g:.4f}" for g in header.calibration.gains)
+    for note in file.notes:
+        out.say(note)
     out.say(f"model {header.model}; gains {gains} ({header.calibration.origin})")
     if header.calibration.conversion is not None:
         out.say(f"captured under {header.calibration.light}, converted to D65")

@@ -10,6 +10,7 @@ import typer
 
 from cutis.apps import (
     bench,
+    check,
     demo,
     edit,
     estimate,
@@ -19,6 +20,7 @@ from cutis.apps import (
     render,
     simulate,
     spectrum,
+    studio,
     train,
 )
 from cutis.apps.edit_flags import InOrder
@@ -56,9 +58,11 @@ def _options(
 
 
 app.command("estimate")(estimate.estimate)
+app.command("check")(check.check)
 app.command("edit", cls=InOrder)(edit.edit)
 app.command("render", cls=InOrder)(render.render)
 app.command("export", cls=InOrder)(export.export)
+app.command("studio")(studio.studio)
 app.command("spectrum")(spectrum.spectrum)
 app.command("fit")(fit.fit)
 app.command("simulate")(simulate.simulate)
@@ -83,7 +87,7 @@ def main() -> None:
         code = app(arguments, prog_name="cutis", standalone_mode=False)
         sys.stdout.flush()
     except CutisError as error:
-        _fail(str(error))
+        _fail(str(error), error.code)
     except _Ended as error:
         _fail(f"ended by {error}; files already written are whole", 128 + error.number)
     except KeyboardInterrupt:

@@ -29,8 +29,8 @@ ModelName = Annotated[
     str,
     typer.Option(
         "--model",
-        help="default, measured2026, aliaga2022-exact, aliaga2022, kubelka-munk, one that another "
-        "package brings, or a .safetensors file of weights.",
+        help="default, measured2026, measured2026b, aliaga2022-exact, aliaga2022, kubelka-munk, "
+        "one that another package brings, or a .safetensors file of weights.",
     ),
 ]
 Method = Annotated[
@@ -47,7 +47,9 @@ Illuminant = Annotated[
 ]
 TissueName = Annotated[
     str,
-    typer.Option("--tissue", help="measured2026, fitted to measured skin, or aliaga2022."),
+    typer.Option(
+        "--tissue", help="measured2026b or measured2026, fitted to measured skin, or aliaga2022."
+    ),
 ]
 Amount = Annotated[float, typer.Option("--amount", help="Share of the edit to apply, 0 to 1.")]
 Skins = Annotated[
@@ -63,7 +65,10 @@ Again = Annotated[
     typer.Option("--again", help="Also what is there already, and what was made with other flags."),
 ]
 Cluster = Annotated[
-    str | None, typer.Option("--cluster", help="Dask scheduler to work on: tcp://host:8786.")
+    str | None,
+    typer.Option(
+        "--cluster", help="Dask scheduler to work on: tcp://127.0.0.1:8786, tls://host:8786."
+    ),
 ]
 Colorspace = Annotated[
     str,
@@ -96,6 +101,21 @@ class Turn(StrEnum):
     IGNORE = "ignore"
 
 
+class Switch(StrEnum):
+    """On or off."""
+
+    ON = "on"
+    OFF = "off"
+
+
+Steadiness = Annotated[
+    Switch,
+    typer.Option(
+        "--steady",
+        help="on smooths melanin type and oxygenation as far as colours allow, at the cost of "
+        "thickness; off finds every texel by itself.",
+    ),
+]
 Turning = Annotated[
     Turn,
     typer.Option(

@@ -104,7 +104,8 @@ def render(
     """
     from cutis.apps.console import bar, out
     from cutis.errors import CutisError
-    from cutis.jobs.render import MaterialJob, RenderJob, Subject
+    from cutis.jobs.render import MaterialJob, RenderJob
+    from cutis.jobs.subject import Subject
     from cutis.render.heads import heads
     from cutis.render.scene import MESHES, Scene
 

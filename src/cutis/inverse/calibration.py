@@ -12,7 +12,7 @@ skins too. A capture under a light other than D65 is first converted to it (`to_
 Conversion and gains are undone on output, so colours come back as they came.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -44,6 +44,8 @@ LIMITS = (0.1, 10.0)
 White = Literal["none", "auto"] | Sequence[float] | None
 Exposure = Literal["none", "auto"] | float | None
 Matrix = tuple[tuple[float, ...], ...]
+Nearest = Callable[[NDArray[np.float32]], NDArray[np.float32]]
+"""Colours (n, 3) of linear sRGB → the nearest that skin has."""
 
 
 @dataclass(frozen=True)
@@ -118,10 +120,8 @@ def calibrate(
         red, green, blue = (float(g) for g in fixed)
         origin = "given" if np.any(fixed != 1) else "none"
         return Calibration((red, green, blue), origin, name, conversion)
-    if white == "auto":
-        found = _search(np.asarray(rgb) * fixed, np.eye(3), tissue)
-    else:
-        found = _search(np.asarray(rgb) * fixed, np.ones((1, 3)), tissue)
+    directions = np.eye(3) if white == "auto" else np.ones((1, 3))
+    found = search(np.asarray(rgb) * fixed, nearest_of(tissue), directions)
     red, green, blue = (float(g) for g in fixed * found)
     return Calibration((red, green, blue), "auto", name, conversion)
 
@@ -138,10 +138,25 @@ def _checked(values: Sequence[float], count: int, name: str) -> NDArray[np.float
     return gains
 
 
-def _search(
-    rgb: NDArray[np.floating], directions: NDArray[np.float64], tissue: Tissue
+def nearest_of(tissue: Tissue) -> Nearest:
+    """Colours (n, 3) → those of the skins of a tissue that are fitted to them (n, 3)."""
+    space = albedo_space(tissue)
+    start = np.array([0.35, 0.4, 0.4, 0.5, 0.5])
+
+    def nearest(colours: NDArray[np.float32]) -> NDArray[np.float32]:
+        skins = fit(space, colours, start, np.eye(5), 3e-3, iterations=10)
+        return space.rgb(from_coordinates(skins))
+
+    return nearest
+
+
+def search(
+    rgb: NDArray[np.floating], nearest: Nearest, directions: ArrayLike | None = None
 ) -> NDArray[np.float64]:
-    """The best gains (3,) of the form exp(x @ directions)."""
+    """The best gains (3,) of the form exp(x @ directions), for texels `rgb` (n, 3).
+
+    Without `directions` (k, 3) each channel has a gain of its own.
+    """
     from scipy.optimize import minimize
 
     bright = rgb[(rgb > 0.0).all(axis=1)]
@@ -153,15 +168,12 @@ def _search(
     ordered = bright[curve_order(bright.astype(np.float32))]
     places = np.linspace(0, len(ordered) - 1, min(SAMPLE, len(ordered))).astype(int)
     sample = ordered[places].astype(np.float32)
-    space = albedo_space(tissue)
-    start = np.array([0.35, 0.4, 0.4, 0.5, 0.5])
+    directions = np.asarray(np.eye(3) if directions is None else directions, dtype=np.float64)
 
     def cost(x: NDArray[np.floating]) -> float:
         log_gains = x @ directions
         colours = sample * np.exp(log_gains).astype(np.float32)
-        skins = fit(space, colours, start, np.eye(5), 3e-3, iterations=10)
-        explained = space.rgb(from_coordinates(skins))
-        error = (explained - colours) / (colours.mean(axis=1, keepdims=True) + 0.01)
+        error = (nearest(colours) - colours) / (colours.mean(axis=1, keepdims=True) + 0.01)
         r2 = (error.astype(np.float64) ** 2).sum(axis=1)
         return float(np.mean(r2 / (r2 + SCALE**2)) + PULL * np.sum(log_gains**2))
 

@@ -9,7 +9,7 @@ model than that.
 import hashlib
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Protocol, TypeAlias
 
 import numpy as np
@@ -68,7 +68,9 @@ class ModelSurvey(Survey, Protocol):
 
 
 TileEstimate: TypeAlias = Callable[[Map, Map, State, bool], Found]
-"""(h, W, 3) calibrated colours, (h, W) cover, the survey's findings, whether σ is wanted → maps."""
+"""(h, W, 3) calibrated colours, (h, W) cover, the survey's findings, whether σ is wanted → maps.
+
+Where no σ is found, it is that of each texel's colour (`Model.trust`)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,8 +85,9 @@ class Model:
     seen, in network coordinates. `digest` stands for all that results depend on: tables, weights,
     constants (`content_digest`).
 
-    A model that looks at neighbours has `of_tile`, which looks `reach` texels far, and may have
-    `survey`, which makes a survey of what will be estimated. `recipe` is what another process finds
+    A model that looks at neighbours has `of_tile`, which looks `reach` texels far in tiles that
+    begin at a multiple of `grid` rows, and may have `survey`, which makes a survey of what will be
+    estimated. `recipe` is what another process finds
     the model by: a name of the registry or the whole path of a file, and the device.
     """
 
@@ -96,6 +99,7 @@ class Model:
     prior_sigma: tuple[float, ...] | None = None
     digest: str = ""
     reach: int = 0
+    grid: int = 1
     of_tile: TileEstimate | None = None
     survey: Callable[[], ModelSurvey] | None = None
     recipe: tuple[str, str] | None = None
@@ -116,6 +120,13 @@ class Model:
 
     def __repr__(self) -> str:
         return f"<cutis model {self.name}, tissue {self.tissue.name}, {self.digest[:12]}>"
+
+    @property
+    def alone(self) -> "Model":
+        """The same without neighbours: every texel by itself."""
+        if self.of_tile is None:
+            return self
+        return replace(self, reach=0, grid=1, of_tile=None, survey=None)
 
     def encode(self, rgb: ArrayLike) -> Map:
         """(..., 3) calibrated linear sRGB → (..., 5) parameters in their units.
@@ -149,19 +160,23 @@ class Model:
     ) -> Found:
         """Maps of a tile: (h, W, 3) calibrated linear sRGB where `cover` (h, W) is not 0.
 
+        `state` is what the survey found, and under "rounding" the step that encoded colours of the
+        capture are rounded to, 1/255 for instance; without it they are not.
+
         Rows within `reach` of an edge of the tile that is no edge of the texture are not yet what
         they are inside: whoever cuts tiles gives so many more rows and leaves them out afterwards.
         """
-        if self.of_tile is not None:
-            return self.of_tile(colours, cover, state or {}, sigma)
         inside = cover > 0
-        chosen = colours[inside]
-        maps = dict(zip(NAMES, _spread(self.encode(chosen), inside), strict=True))
-        trust = self.trust(chosen) if sigma else None
+        chosen = texels(colours, inside)
+        if self.of_tile is None:
+            found = Found(dict(zip(NAMES, spread(self.encode(chosen), inside), strict=True)))
+        else:
+            found = self.of_tile(colours, cover, state or {}, sigma)
+        trust = self.trust(chosen) if sigma and not found.sigmas else None
         if trust is None:
-            return Found(maps)
-        *sigmas, confidence = _spread(trust, inside)
-        return Found(maps, dict(zip(NAMES, sigmas, strict=True)), confidence)
+            return found
+        *sigmas, confidence = spread(trust, inside)
+        return replace(found, sigmas=dict(zip(NAMES, sigmas, strict=True)), confidence=confidence)
 
 
 def content_digest(*parts: object) -> str:
@@ -174,7 +189,12 @@ def content_digest(*parts: object) -> str:
     return total.hexdigest()
 
 
-def _spread(values: Map, inside: NDArray[np.bool_]) -> Map:
+def texels(values: Map, inside: NDArray[np.bool_]) -> Map:
+    """(h, W, c) → (n, c) of the texels inside; no copy where that is all."""
+    return values.reshape(-1, values.shape[-1]) if inside.all() else values[inside]
+
+
+def spread(values: Map, inside: NDArray[np.bool_]) -> Map:
     """(n, c) values of the texels inside → (c, h, W), 0 elsewhere."""
     whole = np.zeros((values.shape[1], *inside.shape), dtype=np.float32)
     whole[:, inside] = values.T

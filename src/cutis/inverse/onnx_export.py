@@ -21,7 +21,7 @@ IR_VERSION = 8
 
 def decoder_onnx(networks: Autoencoder) -> bytes:
     """The decoder, `skin` → `rgb`, as the bytes of an .onnx file."""
-    graph = _Graph()
+    graph = Graph()
     roots, lows, spans = _coordinates()
     value = graph.add("Pow", "skin", graph.constant("roots", 1 / roots))
     value = graph.add("Sub", value, graph.constant("lows", lows))
@@ -32,7 +32,7 @@ def decoder_onnx(networks: Autoencoder) -> bytes:
 
 def encoder_onnx(networks: Autoencoder) -> bytes:
     """The encoder, calibrated `rgb` → `skin`, as the bytes of an .onnx file."""
-    graph = _Graph()
+    graph = Graph()
     roots, lows, spans = _coordinates()
     value = graph.perceptron("rgb", networks.encoder)
     value = graph.add("Mul", value, graph.constant("spans", spans))
@@ -51,7 +51,7 @@ def _coordinates() -> tuple[Any, Any, Any]:
     return roots, lows, highs - lows
 
 
-class _Graph:
+class Graph:
     """Operators one after the other."""
 
     def __init__(self) -> None:
@@ -66,18 +66,30 @@ class _Graph:
         self.constants: list[Any] = []
 
     def constant(self, name: str, values: ArrayLike) -> str:
+        """Numbers by name."""
         array = np.ascontiguousarray(values, dtype=np.float32)
         self.constants.append(self.onnx.numpy_helper.from_array(array, name))
         return name
 
-    def add(self, operator: str, *inputs: str, **attributes: Any) -> str:
-        name = f"{operator.lower()}_{len(self.nodes)}"
-        self.nodes.append(
-            self.onnx.helper.make_node(operator, list(inputs), [name], name, **attributes)
-        )
+    def integers(self, name: str, values: ArrayLike) -> str:
+        """Whole numbers by name, for indices and axes."""
+        array = np.ascontiguousarray(values, dtype=np.int64)
+        self.constants.append(self.onnx.numpy_helper.from_array(array, name))
         return name
 
+    def add(self, operator: str, *inputs: str, **attributes: Any) -> str:
+        """One operator with one result; its name."""
+        return self.node(operator, list(inputs), 1, **attributes)[0]
+
+    def node(self, operator: str, inputs: list[str], count: int, **attributes: Any) -> list[str]:
+        """One operator with `count` results; their names."""
+        name = f"{operator.lower()}_{len(self.nodes)}"
+        results = [name if count == 1 else f"{name}_{i}" for i in range(count)]
+        self.nodes.append(self.onnx.helper.make_node(operator, inputs, results, name, **attributes))
+        return results
+
     def perceptron(self, value: str, layers: Perceptron) -> str:
+        """A network's layers."""
         last = len(layers.weights) - 1
         for i, (weight, bias) in enumerate(zip(layers.weights, layers.biases, strict=True)):
             w, b = self.constant(f"weight_{i}", weight), self.constant(f"bias_{i}", bias)
@@ -88,6 +100,7 @@ class _Graph:
     def finish(
         self, value: str, given: tuple[str, int], found: tuple[str, int], note: str
     ) -> bytes:
+        """The file, from what is `given` to `value`, which is called as `found` says."""
         helper, kind = self.onnx.helper, self.onnx.TensorProto.FLOAT
         self.nodes.append(helper.make_node("Identity", [value], [found[0]], "result"))
         graph = helper.make_graph(

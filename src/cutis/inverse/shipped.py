@@ -1,10 +1,10 @@
 """The models that come with cutis.
 
-`measured2026` reads the most probable measured skin from a baked table and decodes by the colour
-table of its tissue; `aliaga2022-exact` does the same with the tissue of the paper and no prior of
-measured skin. `aliaga2022` is the paper's pair of networks, trained by `cutis train`; `lookup` and
-`lookup-55k` are its look-up tensors of 256 000 and 55 296 skins, `kubelka-munk` the two-parameter
-baseline.
+`measured2026b` and `measured2026` read the most probable measured skin from a baked table and
+decode by the colour table of their tissue; `aliaga2022-exact` does the same with the tissue of the
+paper and no prior of measured skin. `aliaga2022` is the paper's pair of networks, trained by
+`cutis train`; `lookup` and `lookup-55k` are its look-up tensors of 256 000 and 55 296 skins,
+`kubelka-munk` the two-parameter baseline.
 """
 
 from collections.abc import Callable
@@ -21,12 +21,12 @@ from cutis.inverse.lookup import SHAPES, lookup_tensor
 from cutis.inverse.model import Conversion, Model, content_digest
 from cutis.inverse.network import Autoencoder, Perceptron, load_weights
 from cutis.inverse.prior import SkinPrior, load_prior
-from cutis.optics import ALIAGA2022, MEASURED2026, Tissue, axes
+from cutis.optics import ALIAGA2022, MEASURED2026, MEASURED2026B, Tissue, axes
 
-EXACT, MEASURED = "aliaga2022-exact", "measured2026"
+EXACT, MEASURED, VARYING = "aliaga2022-exact", "measured2026", "measured2026b"
 NETWORKS = ("aliaga2022",)
 """Models that are pairs of networks."""
-TISSUE_OF = {EXACT: ALIAGA2022, MEASURED: MEASURED2026}
+TISSUE_OF = {EXACT: ALIAGA2022, MEASURED: MEASURED2026, VARYING: MEASURED2026B}
 """The tissues of baked models."""
 WEIGHTS = resources.files("cutis.data").joinpath("weights")
 TABLES = resources.files("cutis.data").joinpath("albedo")
@@ -34,6 +34,7 @@ TABLES = resources.files("cutis.data").joinpath("albedo")
 
 def _baked(name: str) -> Model:
     from cutis.inverse.baked import Baked, load_baked
+    from cutis.inverse.steady import STEADINESS, steadied
     from cutis.inverse.trust import look_up_trust
 
     def table(stem: str) -> Baked:
@@ -45,14 +46,15 @@ def _baked(name: str) -> Model:
     if name == EXACT:
         return Model(name, inverse.skins, decode, tissue, digest=_digest(tissue, f"{name}.npz"))
     trust = table(f"{name}-trust")
-    before = tuple(float(s) for s in shipped_prior().prior_sigma)
+    before = tuple(float(s) for s in shipped_prior(name).prior_sigma)
     files = (f"{name}.npz", f"{name}-trust.npz", f"{name}-prior.npz")
-    return Model(
+    model = Model(
         name, inverse.skins, decode, tissue,
         to_trust=lambda rgb: look_up_trust(trust, rgb),
         prior_sigma=before,
-        digest=_digest(tissue, *files),
+        digest=content_digest(_digest(tissue, *files), list(STEADINESS)),
     )  # fmt: skip
+    return steadied(model, inverse)
 
 
 def _tensor(name: str) -> Model:
@@ -76,6 +78,7 @@ def _shipped_networks(name: str, device: str) -> Model:
 
 
 FACTORIES: dict[str, Callable[[str], Model]] = {
+    VARYING: lambda _: _baked(VARYING),
     MEASURED: lambda _: _baked(MEASURED),
     EXACT: lambda _: _baked(EXACT),
     "aliaga2022": lambda device: _shipped_networks("aliaga2022", device),
@@ -95,9 +98,9 @@ def from_file(path: Path, device: str) -> Model:
     )  # fmt: skip
 
 
-def shipped_prior() -> SkinPrior:
-    """The prior of measured skin that `measured2026` is baked from."""
-    with resources.as_file(WEIGHTS.joinpath(f"{MEASURED}-prior.npz")) as file:
+def shipped_prior(name: str = MEASURED) -> SkinPrior:
+    """The prior of measured skin that a model is baked from."""
+    with resources.as_file(WEIGHTS.joinpath(f"{name}-prior.npz")) as file:
         return load_prior(file)
 
 

@@ -14,10 +14,14 @@ which nothing is known but its range, so that what a spectrum does not tell gets
 range instead of infinity. A residual that is not noise but the model's error goes from wavelength
 to wavelength in waves: σ is then a scale of how far parameters are from what another, equally good
 model would say, no more.
+
+Of a tissue whose skins also differ in what its parameters do not say, the most probable skin is
+found instead, under what is expected (`expectation.py`): by logits of u, from the same starts. Its
+covariance is the inverse of the curvature of that cost, with the hidden variables free.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,6 +29,8 @@ from numpy.typing import ArrayLike, NDArray
 from cutis.albedo import AlbedoSpace, albedo_space
 from cutis.albedo.sampled import SampledSpace
 from cutis.errors import CutisError
+from cutis.inverse.expectation import PIVOT, Expectation, expected_of
+from cutis.inverse.fit import logit
 from cutis.optics import (
     NAMES,
     RARE_NAMES,
@@ -50,6 +56,10 @@ NO_RESIDUAL = 0.005
 """Noise taken where there are no more wavelengths than free parameters and none is given."""
 BATCH = 1 << 13
 """Spectra fitted at a time."""
+LARGEST_LOGIT = 4.0
+"""Bound on logits that fits start from: nearer to an end, slopes are too flat to leave it."""
+RARE_LOGIT = (-3.0, 3.0)
+"""What is expected of the logit of a rare chromophore: hardly any, and how loosely."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,13 +68,15 @@ class SpectralFit:
 
     `values` (n, p) float64; `covariance` (n, p, p) in the same units, 0 for what was held; `rmse`
     (n,) of the reflectance as measured. Of spectra with fewer usable wavelengths than free
-    parameters, all are NaN.
+    parameters, all are NaN. `scattering` (n, 2) is ln a and b of the dermis beyond what the tissue
+    says of it, where its skins differ in that.
     """
 
     parameters: tuple[Parameter, ...]
     values: NDArray[np.float64]
     covariance: NDArray[np.float64]
     rmse: NDArray[np.float64]
+    scattering: NDArray[np.float64] | None = None
 
     @property
     def sigma(self) -> NDArray[np.float64]:
@@ -96,6 +108,7 @@ class SpectralFitter:
         self.specular, self.noise = float(specular), noise
         tissue, self._held, self._told = _with_rare(tissue, dict(held or {}), free)
         self.space: AlbedoSpace = albedo_space(tissue)
+        self.expected: Expectation | None = expected_of(tissue)
         self.sampled = SampledSpace(self.space, _shifted(wavelengths, shift))
         self.free = _free(tissue, self._held)
         if not self.free.any():
@@ -137,6 +150,7 @@ class SpectralFitter:
             np.empty((count, size)),
             np.empty((count, size, size)),
             np.empty(count),
+            None if self.expected is None else np.empty((count, 2)),
         )
         for start in range(0, count, BATCH):
             part = slice(start, start + BATCH)
@@ -144,15 +158,37 @@ class SpectralFitter:
         told = list(self._told)
         if len(told) == size:
             return found
-        covariance = found.covariance[:, told][:, :, told]
-        return SpectralFit(self.parameters, found.values[:, told], covariance, found.rmse)
+        return replace(
+            found,
+            parameters=self.parameters,
+            values=found.values[:, told],
+            covariance=found.covariance[:, told][:, :, told],
+        )
 
-    def reflectance(self, values: ArrayLike) -> NDArray[np.float64]:
-        """(n, p) skins → (n, wavelengths) reflectance as the instrument sees it."""
+    def reflectance(
+        self, values: ArrayLike, scattering: ArrayLike | None = None
+    ) -> NDArray[np.float64]:
+        """(n, p) skins → (n, wavelengths) reflectance as the instrument sees it.
+
+        With `scattering` (n, 2), that of `SpectralFit`, of dermis that scatters so.
+        """
         skins = np.zeros((len(np.asarray(values)), len(self._parameters)))
         skins[:, list(self._told)] = values
-        albedo = self.sampled.reflectance(skins)
+        if scattering is None:
+            albedo = self.sampled.reflectance(skins)
+        else:
+            from cutis.inverse.expected_fit_kernel import scattered
+
+            rows, _ = self.space.rows(skins)
+            rows = np.ascontiguousarray(rows, dtype=np.float32)
+            albedo = np.empty((len(rows), len(self.sampled.wavelengths)), np.float32)
+            hidden = np.ascontiguousarray(scattering, dtype=np.float64)
+            scattered(len(rows), rows, hidden, self.sampled.model, self._powers, albedo)
         return np.asarray(self.specular + (1 - self.specular) * albedo, dtype=np.float64)
+
+    @property
+    def _powers(self) -> NDArray[np.float64]:
+        return np.asarray(np.log(self.sampled.wavelengths / PIVOT))
 
     def _fit(
         self, measured: NDArray[np.float64], weight: NDArray[np.floating], found: SpectralFit,
@@ -171,6 +207,8 @@ class SpectralFitter:
         costs = np.empty(len(y))
         starts, held = self.starts(y, w), np.ones(len(every), dtype=np.bool_)
         held[list(self.space.places)] = ~self.free
+        if self.expected is not None:
+            return self._fit_expected(y, w, starts, known, self.expected, found, part)
         ranges = axes(every, dict(self.space.tissue.fixed)).astype(np.float32)
         fit_kernel(
             len(y), y, w, starts, held, ITERATIONS, ranges, self.sampled.model, best, matrices,
@@ -193,6 +231,64 @@ class SpectralFitter:
         variance = self._variance(spread, used) / unit**2
         covariance = self._covariance(matrices[:, places][:, :, places], variance, mean, u)
         found.covariance[part] = np.where(bad[:, None, None], np.nan, covariance)
+
+    def _fit_expected(
+        self, y: NDArray[np.float32], weight: NDArray[np.float32], starts: NDArray[np.float64],
+        known: NDArray[np.bool_], expected: Expectation, found: SpectralFit, part: slice,
+    ) -> None:  # fmt: skip
+        from cutis.inverse.expected_fit_kernel import fit_expected
+
+        every, unit = self.space.every_parameter, 1 - self.specular
+        size = len(every)
+        # the five, then rare chromophores, then ln a and b
+        order = [*range(len(NAMES)), size, size + 1]
+        precision = np.zeros((size + 2, size + 2))
+        precision[np.ix_(order, order)] = expected.precision
+        centre = np.zeros(size + 2)
+        centre[: len(NAMES)] = expected.centre
+        for i in range(len(NAMES), size):
+            centre[i], precision[i, i] = RARE_LOGIT[0], RARE_LOGIT[1] ** -2
+        held = np.full(size, -1.0)
+        for i, p in enumerate(every):
+            if p.name in self._held:
+                held[i] = p.to_coordinate(self._held[p.name])
+        first = np.zeros((*starts.shape[:2], size + 2))
+        first[..., :size] = np.clip(logit(starts), -LARGEST_LOGIT, LARGEST_LOGIT)
+        noise = expected.noise if self.noise is None else self.noise
+        scaled = (weight * (unit / noise) ** 2).astype(np.float32)
+        best, costs = np.empty((len(y), size + 2)), np.empty(len(y))
+        matrices = np.empty((len(y), size + 2, size + 2))
+        ranges = axes(every, dict(self.space.tissue.fixed)).astype(np.float32)
+        fit_expected(
+            len(y), y, scaled, first, centre, precision, held, ITERATIONS, ranges,
+            self.sampled.model, self._powers, best, matrices, costs,
+        )  # fmt: skip
+        u = 1 / (1 + np.exp(-best[:, :size]))
+        values = np.stack([p.from_coordinate(u[:, i]) for i, p in enumerate(every)], axis=-1)
+        for i, p in enumerate(every):
+            if p.name in self._held:
+                values[:, i] = self._held[p.name]
+        used = known.sum(axis=1)
+        bad = used < self.free.sum()
+        wrong = self.reflectance(values[:, list(self._told)], best[:, size:]) - self.specular
+        residual = np.where(known, wrong - unit * y, 0.0)
+        found.rmse[part] = np.sqrt((residual**2).sum(axis=1) / np.maximum(used, 1))
+        loose = [*np.flatnonzero(held < 0), size, size + 1]
+        inverse = np.linalg.inv(matrices[:, loose][:, :, loose])
+        slope = np.stack([p.slope(u[:, i]) * u[:, i] * (1 - u[:, i]) for i, p in enumerate(every)])
+        some = loose[:-2]
+        covariance = np.zeros((len(y), size, size))
+        covariance[:, np.array(some)[:, None], some] = inverse[:, :-2, :-2]
+        covariance *= slope.T[:, :, None] * slope.T[:, None, :]
+        assert found.scattering is not None
+        for values_of, told in (
+            (found.values, values),
+            (found.covariance, covariance),
+            (found.scattering, best[:, size:]),
+        ):
+            values_of[part] = told
+            values_of[part][bad] = np.nan
+        found.rmse[part][bad] = np.nan
 
     def _variance(
         self, spread: NDArray[np.float64], used: NDArray[np.intp]

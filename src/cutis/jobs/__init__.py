@@ -5,6 +5,7 @@ renderer's add-on. All of them get the same results, bit for bit.
 """
 
 from cutis.jobs.edit import Edited, EditJob
+from cutis.jobs.edit_frames import EditFramesJob
 from cutis.jobs.estimate import EstimateJob
 from cutis.jobs.export import ExportJob
 from cutis.jobs.fit import FitJob, Fitted
@@ -19,6 +20,7 @@ __all__ = [
     "Cancel",
     "Cancelled",
     "CaptureFiles",
+    "EditFramesJob",
     "EditJob",
     "Edited",
     "EstimateJob",

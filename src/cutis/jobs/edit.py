@@ -9,9 +9,10 @@ import numpy as np
 
 from cutis.colour import Light, Space
 from cutis.errors import CutisError
-from cutis.inverse import Model
+from cutis.inverse import Calibration, Model
 from cutis.jobs.files import check_outputs
 from cutis.jobs.job import digest_of
+from cutis.kernels.behind import Behind
 from cutis.looks import asked
 from cutis.maps import (
     Change,
@@ -53,8 +54,9 @@ class EditJob:
 
     `edits` are a look, or edits in order: `amount` (0–1) of them, inside the painted `mask`.
     `source` is the capture where it is not where the maps say; `model` another model than that of
-    the maps. `light` shows the face under another light. `space` is that of the output, None for
-    the capture's. `save_maps` also writes the edited maps. Of a UDIM set, all names hold <UDIM>.
+    the maps, `calibration` what the capture was multiplied by, where the maps lost it. `light`
+    shows the face under another light. `space` is that of the output, None for the capture's.
+    `save_maps` also writes the edited maps. Of a UDIM set, all names hold <UDIM>.
     """
 
     maps: Path
@@ -65,6 +67,7 @@ class EditJob:
     source: Path | None = None
     light: Light | None = None
     model: Model | None = None
+    calibration: Calibration | None = None
     space: Space | None = None
     save_maps: Path | None = field(default=None, metadata={"result": False})
 
@@ -106,6 +109,7 @@ class EditJob:
     def _run(self, wanted: Recipe, memo: Memo, progress: Progress) -> Edited:
         with contextlib.ExitStack() as stack:
             maps = stack.enter_context(MapsFile(self.maps))
+            maps.named(self.model, self.calibration)
             path = find_source(maps.provenance, self.maps, self.source)
             inputs = {"the file of maps": self.maps, "the capture": path, "the mask": self.mask}
             check_outputs([self.output, self.save_maps], inputs)
@@ -115,11 +119,11 @@ class EditJob:
             texture = stack.enter_context(open_source(maps.provenance, path))
             if texture.shape != maps.shape:
                 raise CutisError(f"{path}: the texture is {texture.shape}, the maps {maps.shape}")
-            changes = bound([wanted], Face(maps, memo=memo))
+            changes = bound([wanted], Face(maps, memo=memo, progress=progress))
             model = self.model or maps.made_by.load()
             done = self._albedo(stack, maps, texture, changes, model, progress)
             said = tuple(note for change in changes for note in change.notes)
-            done = replace(done, notes=(*texture.notes, *said))
+            done = replace(done, notes=(*maps.notes, *texture.notes, *said))
             if self.save_maps is not None:
                 looks = (*maps.header.looks, *wanted.documents)
                 self._maps(stack, maps, texture, changes, looks, done, model, progress)
@@ -134,16 +138,17 @@ class EditJob:
         height, width = maps.shape
         inside, changed = 0, 0
         clamped: Any = 0
-        for rows in texture.bands():
-            skin = maps.edited(rows, changes, trust=False)
-            part = texture.rows(rows)
-            which, colours = look(skin, part.linear())
-            result = part.with_linear(colours, which)
-            writer.write(result)
-            inside += int(np.count_nonzero(skin.mask))
-            changed += int(np.count_nonzero((result.pixels != part.pixels).any(axis=-1)))
-            clamped = clamped + np.array(skin.clamped, dtype=np.int64)
-            progress(min(rows.stop, height) * width, height * width, "editing")
+        with Behind() as behind:
+            for rows in texture.bands():
+                skin = maps.edited(rows, changes, trust=False)
+                part = texture.rows(rows)
+                which, colours = look(skin, part.linear())
+                result = part.with_linear(colours, which)
+                behind.call(writer.write, result)
+                inside += int(np.count_nonzero(skin.mask))
+                changed += int(np.count_nonzero((result.pixels != part.pixels).any(axis=-1)))
+                clamped = clamped + np.array(skin.clamped, dtype=np.int64)
+                progress(min(rows.stop, height) * width, height * width, "editing")
         if not inside:
             raise maps.no_mask()
         told = tuple(int(count) for count in clamped[len(maps.header.edits) :])
@@ -168,6 +173,7 @@ class EditJob:
         )  # fmt: skip
         height, width = maps.shape
         put = stack.enter_context(maps_writer(self.save_maps, header, maps.shape))
-        for rows in maps.bands():
-            put(maps.edited(rows, changes))
-            progress(min(rows.stop, height) * width, height * width, "writing maps")
+        with Behind() as behind:
+            for rows in maps.bands():
+                behind.call(put, maps.edited(rows, changes))
+                progress(min(rows.stop, height) * width, height * width, "writing maps")

@@ -12,6 +12,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
+from cutis.arrays import Map
+from cutis.checks import examine, gather
 from cutis.colour import LINEAR, Light, Space, light
 from cutis.errors import CutisError
 from cutis.inverse import Model
@@ -21,6 +23,7 @@ from cutis.jobs.files import made_folder
 from cutis.jobs.job import Told, digest_of, tell, told
 from cutis.jobs.outcome import Asked, CaptureFiles, Estimated
 from cutis.jobs.results import FILES, MADE_FROM, Found, alone, look, made_from
+from cutis.kernels.behind import Behind
 from cutis.maps import FileCapture, Header, Surveyed, estimate_bands, load_model, survey
 from cutis.maps.estimating import Progress, nobody
 from cutis.maps.skin_maps import Estimate
@@ -28,6 +31,7 @@ from cutis.maps.source import source_note
 from cutis.maps.writing import maps_writer
 from cutis.optics import NAMES
 from cutis.report import Regions, RunningReport
+from cutis.report.numbers import Doubt
 from cutis.report.page import write_report
 from cutis.report.previews import Previews
 from cutis.textures import (
@@ -51,7 +55,8 @@ class EstimateJob:
     `output_colorspace` is that of NAME.model.exr, None for linear sRGB. `half` stores maps in half
     the size, `sigma` adds standard deviations and confidence where the model knows them, `page`
     adds NAME.report.html. `orientation` "ignore" keeps pictures in the order they are stored in,
-    whatever their tag says. `again` makes anew what is there, also what was made otherwise.
+    whatever their tag says. `steady` lets models look at neighbours. `again` makes anew
+    what is there, also what was made otherwise.
     """
 
     captures: tuple[CaptureFiles, ...]
@@ -66,6 +71,7 @@ class EstimateJob:
     sigma: bool = True
     page: bool = False
     orientation: Orientation = "auto"
+    steady: bool = False
     again: bool = field(default=False, metadata={"result": False})
 
     def __post_init__(self) -> None:
@@ -92,6 +98,11 @@ class EstimateJob:
         return replace(self, captures=files, output=Path(os.path.abspath(self.output)))
 
     # the steps, which runners put together ----------------------------------------------------
+
+    @property
+    def used(self) -> Model:
+        """The model as it is used: with neighbours or without."""
+        return self.model if self.steady else self.model.alone
 
     def stem(self, capture: CaptureFiles) -> Path:
         """Results are called this and what they are: STEM.skin.exr."""
@@ -135,7 +146,7 @@ class EstimateJob:
 
     def _surveyed(self, captures: tuple[CaptureFiles, ...], progress: Progress) -> Surveyed:
         opened = [lambda one=one: self._opened(one) for one in captures]
-        return survey(opened, self.model, self.white, self.exposure, self.light, progress)
+        return survey(opened, self.used, self.white, self.exposure, self.light, progress)
 
     def _readable(self, capture: CaptureFiles) -> bool:
         try:
@@ -178,6 +189,7 @@ class EstimateJob:
         stem = self.stem(capture)
         with contextlib.ExitStack() as stack:
             opened = stack.enter_context(self._opened(capture))
+            doubts = self._doubts(opened)
             run = _Run(self, known, opened, stem, stack)
             regions = None
             if capture.regions is not None:
@@ -194,6 +206,7 @@ class EstimateJob:
             colorspace=f"{texture.space.name} ({texture.origin})",
             regions=numbers,
             notes=(*notes, *([] if regions is None else regions.notes)),
+            doubts=doubts,
         )
         total = opened.shape[0] * opened.shape[1]
         progress(total, total, "drawing previews")
@@ -207,6 +220,17 @@ class EstimateJob:
         with replacing(self.report_file(capture)) as path:
             path.write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
         return Estimated(capture.face, report, pictures=pictures)
+
+    def _doubts(self, opened: FileCapture) -> tuple[Doubt, ...]:
+        """Why the capture may be no albedo of skin; what was asked to be searched for is none."""
+        searched = {"cast", "exposure"} if self.white == "auto" else set[str]()
+        searched |= {"exposure"} if self.exposure == "auto" else set()
+        gathered = gather(opened.texture, opened.mask)
+        return tuple(
+            Doubt(one.kind, one.sentence, one.hint)
+            for one in examine(gathered).findings
+            if one.level == "finding" and one.kind not in searched
+        ) if gathered.tallies.inside else ()  # fmt: skip
 
 
 ENDS = (
@@ -242,7 +266,9 @@ class _Run:
             )
         )
         self._open_maps: Callable[[Estimate], Any] = lambda first: stack.enter_context(
-            maps_writer(f"{stem}.skin.exr", self._header(first), opened.shape, kind)
+            maps_writer(
+                f"{stem}.skin.exr", self._header(first), opened.shape, kind, self.report.statistics
+            )
         )
 
     def _header(self, first: Estimate) -> Header:
@@ -254,20 +280,23 @@ class _Run:
         )  # fmt: skip
 
     def through(self, regions: Regions | None, progress: Progress) -> None:
-        """Estimates all rows."""
+        """Estimates all rows; what is ready is written meanwhile."""
         height, width = self._opened.shape
-        bands = estimate_bands(self._opened, self._job.model, self._known, sigma=self._sigma)
-        for rows, skin in bands:
-            if self._put_maps is None:
-                self._put_maps = self._open_maps(skin)
-            self._put_maps(skin)
-            albedo = self._space.from_linear_srgb(skin.model_albedo)
-            self._put_model({name: albedo[..., i] for i, name in enumerate("RGB")})
-            self.report.add(skin)
-            self.previews.add(skin)
-            if regions is not None:
-                regions.add(skin, rows)
-            progress(min(rows.stop, height) * width, height * width, "estimating")
+        bands = estimate_bands(self._opened, self._job.used, self._known, sigma=self._sigma)
+        with Behind() as behind:
+            for rows, skin in bands:
+                if self._put_maps is None:
+                    self._put_maps = self._open_maps(skin)
+                behind.call(self._put, skin, self._space.from_linear_srgb(skin.model_albedo))
+                self.report.add(skin)
+                self.previews.add(skin)
+                if regions is not None:
+                    regions.add(skin, rows)
+                progress(min(rows.stop, height) * width, height * width, "estimating")
+
+    def _put(self, skin: Estimate, albedo: Map) -> None:
+        self._put_maps(skin)
+        self._put_model({name: albedo[..., i] for i, name in enumerate("RGB")})
 
 
 def _file(path: Path | None) -> Told:

@@ -32,6 +32,7 @@ def capture_sets(
     udim: bool,
     sequence: bool,
     say: Callable[[str], None] = lambda _: None,
+    results: bool = True,
 ) -> list[Set]:
     """The captures that the words on the command line mean, in sets.
 
@@ -39,7 +40,8 @@ def capture_sets(
     a pattern inside it. What is there under its name is no pattern. Tiles of a UDIM texture make
     one set: those of NAME.<UDIM>.EXT, of NAME.1001.EXT with `udim`, and those found side by side
     that are sure to be tiles (`textures.udim.tile_sets`); `say` is told of the others. With
-    `sequence` all captures are one set. Raises CutisError where nothing is found.
+    `sequence` all captures are one set. Where there will be `results`, names of captures differ.
+    Raises CutisError where nothing is found.
     """
     sets: list[Set] = []
     words = list(words)
@@ -61,6 +63,8 @@ def capture_sets(
             sets.append(_whole_set(path) if udim else (path,))
     if sequence:
         sets = [tuple(path for one in sets for path in one)]
+    if not results:
+        return sets
     seen: set[str] = set()
     for one in sets:
         for path in one:

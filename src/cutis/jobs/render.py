@@ -3,8 +3,7 @@
 import contextlib
 import hashlib
 import os
-import tempfile
-from collections.abc import Iterator
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from importlib import resources
 from importlib.metadata import version
@@ -14,13 +13,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cutis.colour import Space
 from cutis.errors import CutisError
 from cutis.jobs.files import check_outputs, made_folder
 from cutis.jobs.job import digest_of, tell, told
-from cutis.looks import asked, nothing
-from cutis.maps import Change, Edits, Face, bound
+from cutis.jobs.subject import Subject, needs_maps
+from cutis.looks import nothing
+from cutis.maps import Change
 from cutis.maps.estimating import Progress, nobody
+from cutis.maps.face import Memo
 from cutis.maps.source import digest
 from cutis.render.blender import Blender, find_blender
 from cutis.render.cycles import INDEX, METHOD, base_colour, facing
@@ -31,79 +31,17 @@ from cutis.render.feed import write_feed
 from cutis.render.finished import Finished
 from cutis.render.finished import digest as recipe_digest
 from cutis.render.frames import Frame, file_names
-from cutis.render.heads import Head, credits_of
+from cutis.render.heads import credits_of
 from cutis.render.material_export import export_material
 from cutis.render.medium import mean_free_path, of_maps
 from cutis.render.scene import Scene
 from cutis.render.skin import MAPS, Rows, Skin
-from cutis.textures import Orientation, TextureFile, format_of, read_texture, sweep
+from cutis.textures import format_of, read_texture, sweep
+from cutis.textures.scratch import scratch_folder
+from cutis.textures.udim import FIRST, TOKEN, tile_of
 
 METRE = 1000.0
 """Millimetres per scene unit of an exported material, unless the scene says otherwise."""
-RADII = ("tissue", "maps")
-"""Where mean free paths come from."""
-
-
-@dataclass(frozen=True)
-class Subject:
-    """What is rendered: a skin with edits, and `scene` with all that is not skin.
-
-    `skin` is a file of maps or an albedo texture. `edits` are a look, or edits in order: `amount`
-    (0–1) of them, inside the painted `mask`. `source` is the capture of maps where it is not where
-    they say, `model_only` leaves it out. `colorspace` is that of a texture, None for what it says.
-    `radius` is one of `RADII`. `head` is the bundled head that the scene shows, if it is one.
-    `orientation` "ignore" keeps a texture in the order it is stored in.
-    """
-
-    skin: Path
-    scene: Scene = field(default_factory=Scene)
-    edits: Edits = ()
-    amount: float = 1.0
-    mask: Path | None = None
-    source: Path | None = None
-    model_only: bool = False
-    colorspace: Space | None = None
-    radius: str = "tissue"
-    head: Head | None = None
-    orientation: Orientation = "auto"
-
-    def __post_init__(self) -> None:
-        if self.radius not in RADII:
-            raise CutisError(f"--radius must be {' or '.join(RADII)}, not {self.radius!r}")
-        asked(self.edits, self.amount)
-
-    @contextlib.contextmanager
-    def opened(self) -> Iterator[tuple[Skin, tuple[Change, ...]]]:
-        """The skin, open, and the changes that the edits are."""
-        with contextlib.ExitStack() as stack:
-            space = self.colorspace or "auto"
-            skin = Skin(
-                self.skin, source=self.source, model_only=self.model_only, colorspace=space,
-                orientation=self.orientation,
-            )  # fmt: skip
-            stack.enter_context(skin)
-            if self.head is not None:
-                _check_fit(skin, self.head)
-            yield skin, self.changes(skin)
-
-    def changes(self, skin: Skin, more: Edits = ()) -> tuple[Change, ...]:
-        """The edits, and more of them, as they are on an open skin."""
-        wanted = [
-            asked(one, self.amount, self.mask) for one in (self.edits, more) if not nothing(one)
-        ]
-        if wanted and skin.maps is None:
-            raise skin.no_maps()
-        return bound(wanted, Face(skin.maps)) if skin.maps is not None else ()
-
-    def inputs(self) -> dict[str, Path | None]:
-        """All files that are read, by what they are called."""
-        scene = self.scene
-        maybe = {"mesh": scene.mesh, "normal map": scene.normal, "roughness map": scene.roughness}
-        found = {f"the {what}": p for what, p in maybe.items() if isinstance(p, Path)}
-        return {
-            "the skin to render": self.skin, "the mask": self.mask, "the capture": self.source,
-            **found,
-        }  # fmt: skip
 
 
 @dataclass
@@ -142,27 +80,37 @@ class RenderJob:
     def run(self, progress: Progress = nobody) -> Rendered:
         """Renders what is missing."""
         subject, sequence = self.subject, bool(self.frames)
+        needed = needs_maps(subject) or any(not nothing(one.edits) for one in self.frames)
+        with subject.with_maps(needed, progress) as found:
+            return replace(self, subject=found)._run(progress, sequence)
+
+    def _run(self, progress: Progress, sequence: bool) -> Rendered:
+        subject, tiles = self.subject, self.subject.tiles()
         frames = list(self.frames) or [Frame(1)]
         stem, suffix = self.output.with_suffix(""), self.output.suffix
         names = [self.output]
         if sequence:
             names = [Path(name) for _, name in file_names(frames, str(stem), suffix)]
-        check_outputs(names, subject.inputs())
+        for tile in tiles.values():
+            check_outputs(names, tile.inputs())
         blender = find_blender(self.blender)
         sweep(self.output.parent)
         result, log = Rendered(), Finished(Path(f"{stem}.frames.json"))
-        with (
-            subject.opened() as (skin, changes),
-            tempfile.TemporaryDirectory(prefix="cutis-") as folder,
-        ):
-            check_outputs(
-                names, {"the capture": None if skin.capture is None else skin.capture.path}
-            )
-            result.credits = credits_of(subject.scene.mesh, *skin.origins())
-            said = (note for change in changes for note in change.notes)
-            result.notes = (*skin.notes, *said)
-            base = _recipe(subject, skin, blender) if sequence else {}
-            feeds = _Feeds(subject, skin, Path(folder))
+        with contextlib.ExitStack() as stack:
+            folder = stack.enter_context(scratch_folder())
+            feeds = _Feeds(subject.scene, folder)
+            origins, notes = [], []
+            for number, tile in tiles.items():
+                skin, changes = stack.enter_context(tile.opened())
+                feeds.add(number, tile, skin)
+                check_outputs(
+                    names, {"the capture": None if skin.capture is None else skin.capture.path}
+                )
+                origins += skin.origins()
+                notes += [*skin.notes, *(note for change in changes for note in change.notes)]
+            result.credits = credits_of(subject.scene.mesh, *origins)
+            notes = list(dict.fromkeys(notes))
+            base = _recipe(subject, feeds.tiles, blender) if sequence else {}
             recipes: dict[Path, tuple[Path, str]] = {}
             every: list[str] = []
             todo: list[tuple[Scene, Path]] = []
@@ -175,7 +123,7 @@ class RenderJob:
                     result.there.append(name)
                     continue
                 progress(len(todo), len(frames), "writing textures")
-                light = Path(folder) / f"{name.stem}.exr"
+                light = folder / f"{name.stem}.exr"
                 todo.append((feeds.scene(frame), light))
                 recipes[light] = name, recipe
 
@@ -192,7 +140,8 @@ class RenderJob:
                     log.put(name, recipe)
                 result.written.append(name)
 
-            result.device = render(todo, blender, progress, keep)
+            result.device = render(todo, blender, progress, keep, notes.append)
+            result.notes = tuple(notes)
         if sequence:
             result.animation = Path(f"{stem}.webp")
             film = recipe_digest({"frames": every, "suffix": suffix})
@@ -235,7 +184,15 @@ class MaterialJob:
             if self.blender is not None or os.environ.get("BLENDER"):
                 raise
             found = None
-        subject, scene = self.subject, self.subject.scene
+        if TOKEN in self.subject.skin.name:
+            raise CutisError(
+                f"{self.subject.skin}: a material is made of one tile; give one after the other"
+            )
+        with self.subject.with_maps(needs_maps(self.subject), progress) as subject:
+            return self._export(subject, found, progress)
+
+    def _export(self, subject: Subject, found: Blender | None, progress: Progress) -> Material:
+        scene = subject.scene
         g = scene.anisotropy
         with made_folder(self.folder), subject.opened() as (skin, changes):
             sweep(self.folder)
@@ -254,46 +211,63 @@ class MaterialJob:
 class _Feeds:
     """Textures for Cycles in a folder, each written once however many frames share it."""
 
-    def __init__(self, subject: Subject, skin: Skin, folder: Path) -> None:
-        self._subject, self._skin, self._folder = subject, skin, folder
+    def __init__(self, scene: Scene, folder: Path) -> None:
+        self._scene, self._folder = scene, folder
+        self.tiles: dict[int, tuple[Subject, Skin]] = {}
         self._written: dict[Any, tuple[Path, Any]] = {}
+
+    def add(self, number: int, subject: Subject, skin: Skin) -> None:
+        """A tile of the textures, by its number."""
+        self.tiles[number] = subject, skin
 
     def scene(self, frame: Frame) -> Scene:
         """The scene of a frame, with its textures."""
         if frame.edits not in self._written:
-            changes = self._subject.changes(self._skin, frame.edits)
-            self._written[frame.edits] = self._write(changes)
+            count, single = len(self._written), list(self.tiles) == [FIRST]
+            names = [f"{what}{count}{'' if single else '.' + TOKEN}.exr" for what in _FEEDS]
+            colour, radius = (self._folder / name for name in names)
+            memo: Memo = {}
+            for number, (subject, skin) in self.tiles.items():
+                changes = subject.changes(skin, frame.edits, memo)
+                _feed(subject, skin, changes, tile_of(colour, number), tile_of(radius, number))
+            self._written[frame.edits] = colour, radius
         colour, radius = self._written[frame.edits]
-        scene = self._subject.scene
+        scene = self._scene
         return replace(
             scene, base_colour=colour, radius=radius, turn=scene.turn + frame.turn,
             method=METHOD, subsurface_ior=INDEX, facing=facing(scene.anisotropy),
         )  # fmt: skip
 
-    def _write(self, changes: tuple[Change, ...]) -> tuple[Path, Path]:
-        number, subject = len(self._written), self._subject
-        g = subject.scene.anisotropy
-        everywhere = mean_free_path(self._skin.tissue)
-        if subject.radius == "maps" and self._skin.maps is None:
-            raise CutisError(
-                f"{subject.skin.name} is a texture; --radius maps needs its maps (NAME{MAPS}), "
-                "which cutis estimate makes"
-            )
 
-        def colour(rows: Rows) -> NDArray[np.floating]:
-            return base_colour(rows.albedo, g)
-
-        def lengths(rows: Rows) -> NDArray[np.float32]:
-            mapped = subject.radius == "maps" and rows.maps is not None
-            return cycles_radius(colour(rows), of_maps(rows.maps) if mapped else everywhere)  # type: ignore[arg-type]
-
-        written = self._folder / f"colour{number}.exr", self._folder / f"radius{number}.exr"
-        for path, convert in zip(written, (colour, lengths), strict=True):
-            write_feed(self._skin, path, convert, changes)
-        return written
+_FEEDS = ("colour", "radius")
 
 
-def _recipe(subject: Subject, skin: Skin, blender: Blender) -> dict[str, Any]:
+def _feed(
+    subject: Subject, skin: Skin, changes: tuple[Change, ...], colours: Path, radii: Path
+) -> None:
+    """Writes the textures of one tile."""
+    g = subject.scene.anisotropy
+    everywhere = mean_free_path(skin.tissue)
+    if subject.radius == "maps" and skin.maps is None:
+        raise CutisError(
+            f"{subject.skin.name} is a texture; --radius maps needs its maps (NAME{MAPS}), "
+            "which cutis estimate makes"
+        )
+
+    def colour(rows: Rows) -> NDArray[np.floating]:
+        return base_colour(rows.albedo, g)
+
+    def lengths(rows: Rows) -> NDArray[np.float32]:
+        mapped = subject.radius == "maps" and rows.maps is not None
+        return cycles_radius(colour(rows), of_maps(rows.maps) if mapped else everywhere)  # type: ignore[arg-type]
+
+    for path, convert in ((colours, colour), (radii, lengths)):
+        write_feed(skin, path, convert, changes)
+
+
+def _recipe(
+    subject: Subject, tiles: Mapping[int, tuple[Subject, Skin]], blender: Blender
+) -> dict[str, Any]:
     """All that every picture of a sequence depends on, as JSON holds it."""
     script = resources.files("cutis.data").joinpath("blender", "scene.py")
     scene, g = subject.scene, subject.scene.anisotropy
@@ -301,14 +275,16 @@ def _recipe(subject: Subject, skin: Skin, blender: Blender) -> dict[str, Any]:
     for machine in ("output", "device", "base_colour", "turn"):
         del job[machine]
     files: dict[str, Path | None] = {
-        "skin": subject.skin,
-        "capture": None if skin.maps is None or skin.capture is None else skin.capture.path,
-        "mask": subject.mask,
         "mesh": scene.mesh if isinstance(scene.mesh, Path) else None,
         **_beside(scene.mesh),
         "normal": scene.normal,
         "roughness": scene.roughness if isinstance(scene.roughness, Path) else None,
     }
+    for number, (one, skin) in tiles.items():
+        files[f"skin {number}"], files[f"mask {number}"] = one.skin, one.mask
+        if skin.maps is not None and skin.capture is not None:
+            files[f"capture {number}"] = skin.capture.path
+    tissue = next(iter(tiles.values()))[1].tissue
     digests = {name: digest(path) for name, path in files.items() if path is not None}
     for name in ("mesh", "normal", "roughness"):
         job[name] = digests.get(name, job[name])
@@ -321,7 +297,7 @@ def _recipe(subject: Subject, skin: Skin, blender: Blender) -> dict[str, Any]:
         },
         "scene": job,
         "files": digests,
-        "medium": [METHOD, INDEX, *facing(g), *mean_free_path(skin.tissue, g).tolist()],
+        "medium": [METHOD, INDEX, *facing(g), *mean_free_path(tissue, g).tolist()],
         "first_turn": scene.turn,
     }
 
@@ -335,16 +311,3 @@ def _beside(mesh: str | Path) -> dict[str, Path | None]:
         return {}
     there = sorted(Path(mesh).parent.iterdir())
     return {f"beside {path.name}": path for path in there if path.suffix.lower() in suffixes}
-
-
-def _check_fit(skin: Skin, head: Head) -> None:
-    """CutisError where a texture has not the width : height of those of a bundled head."""
-    with TextureFile(head.albedo) as texture:
-        ratio = texture.shape[1] / texture.shape[0]
-    height, width = skin.shape
-    if abs(width / height / ratio - 1) > 0.01:
-        raise CutisError(
-            f"{skin.path.name} is {width} × {height} texels; textures of the head {head.name} are "
-            f"{ratio:.3g} times as wide as high, so these maps belong to another mesh: give it "
-            "with --mesh"
-        )

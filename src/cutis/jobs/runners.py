@@ -139,14 +139,16 @@ def _client(address: str) -> Any:
         client = Client(address, timeout=PATIENCE)
     except (OSError, ValueError, TimeoutError) as error:
         raise CutisError(
-            f"no Dask scheduler answers at {address}; start one with: dask scheduler"
+            f"no Dask scheduler answers at {address}; start one with: dask scheduler --host "
+            "127.0.0.1 --dashboard-address 127.0.0.1:8787 (others: docs/batch.md)"
         ) from error
     try:
         client.wait_for_workers(1, timeout=PATIENCE)
     except TimeoutError as error:
         client.close(timeout=1)
         raise CutisError(
-            f"the scheduler at {address} has no workers; start some with: dask worker {address}"
+            f"the scheduler at {address} has no workers; start some with: dask worker {address} "
+            "--host 127.0.0.1 --dashboard-address 127.0.0.1:0 (others: docs/batch.md)"
         ) from error
     return client
 

@@ -23,7 +23,7 @@ from cutis.jobs.job import digest_of
 from cutis.maps.estimating import Progress, nobody
 from cutis.textures import replacing
 
-BAKED = (shipped.MEASURED, shipped.EXACT)
+BAKED = tuple(shipped.TISSUE_OF)
 """Recipes that bake a table instead of training networks."""
 
 
@@ -80,7 +80,7 @@ def _bake(recipe: str, folder: Path, progress: Progress) -> list[Path]:
         space = albedo_space(shipped.TISSUE_OF[recipe])
         jobs = {recipe: (exact_inverse(shipped.shipped_encoder(), space), ALIAGA_CHART)}
     else:
-        space, prior = albedo_space(shipped.TISSUE_OF[recipe]), shipped.shipped_prior()
+        space, prior = albedo_space(shipped.TISSUE_OF[recipe]), shipped.shipped_prior(recipe)
         jobs = {
             recipe: (probable_skins(prior, space), MEASURED_CHART),
             f"{recipe}-trust": (trust_of(prior, space), TRUST_CHART),

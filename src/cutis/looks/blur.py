@@ -8,13 +8,13 @@ fewer are held. Masked texels are left out of all sums.
 """
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cutis.maps import Face, Tile
-from cutis.maps.plain import Map, Place
+from cutis.arrays import Map
+from cutis.maps import Face, SkinMaps, Tile
+from cutis.maps.plain import Place
 
 FEW = 8.0
 """Texels of a standard deviation from which on the whole texture is looked at first."""
@@ -31,25 +31,41 @@ class Blur:
     `reach` is how many rows above and below decide what becomes of a row.
     """
 
-    def __init__(self, sigma: float, field: Field, face: Face, trust: bool = False) -> None:
-        """`face` is as it stands where the field is taken; `trust`: the field looks at σ."""
+    def __init__(
+        self, sigma: float, field: Field, face: Face, level: int = 0, trust: bool = False
+    ) -> None:
+        """`face` is as it stands where the field is taken.
+
+        `level` is that of what the field needs to have seen first, `trust`: it looks at σ.
+        """
+        self.step = 1 if sigma < FEW else int(2 ** np.floor(np.log2(sigma / 2)))
+        self._taps, self._face = taps(sigma), face
+        self.reach, self.level = len(self._taps) // 2, level
+        self._grids: tuple[Map, Map] | None = None
+        if self.step > 1:
+            self.reach, self.level = 0, level + 1
+            # variances, in squares: of n texels (1 - 1/n²) / 12, of a cubic B-spline 1/3
+            left = (sigma / self.step) ** 2 - (1 - self.step**-2) / 12 - 1 / 3
+            self._taps = taps(left**0.5)
+            shape = tuple(-(-side // self.step) for side in face.shape)
+            self._sums, self._counts = np.zeros(shape), np.zeros(shape)
+            self._field = field
+            face.ask(self._see, self.level, trust)
+
+    def _see(self, rows: slice, skin: SkinMaps) -> None:
         from cutis.looks.blur_kernel import add_up
 
-        self.step = 1 if sigma < FEW else int(2 ** np.floor(np.log2(sigma / 2)))
-        self._taps, self.reach = taps(sigma), 0
-        if self.step == 1:
-            self.reach = len(self._taps) // 2
-            return
-        shape = tuple(-(-side // self.step) for side in face.shape)
-        sums, counts = np.zeros(shape), np.zeros(shape)
-        for rows, skin in face.bands(trust):
-            values, weights = field(tile_of(skin))
-            add_up(values, weights, rows.start, self.step, sums, counts)
-        # variances, in squares: of n texels (1 - 1/n²) / 12, of a cubic B-spline 1/3
-        left = (sigma / self.step) ** 2 - (1 - self.step**-2) / 12 - 1 / 3
-        narrow = taps(left**0.5)
-        self._sums, self._counts = (_folded(grid.astype(np.float32), narrow)
-                                    for grid in (sums, counts))  # fmt: skip
+        values, weights = self._field(tile_of(skin))
+        add_up(values, weights, rows.start, self.step, self._sums, self._counts)
+
+    def _seen(self) -> tuple[Map, Map]:
+        """Blurred sums and counts of squares of texels."""
+        if self._grids is None:
+            self._face.settle()
+            both = (grid.astype(np.float32) for grid in (self._sums, self._counts))
+            sums, counts = (_folded(grid, self._taps) for grid in both)
+            self._grids = sums, counts
+        return self._grids
 
     def __call__(self, values: Map, weights: Map, at: Place) -> Map:
         """The blurred values (h, W) of some rows, their own where nothing is near."""
@@ -62,7 +78,7 @@ class Blur:
             from cutis.looks.blur_kernel import drawn_large
 
             out = np.empty_like(values)
-            drawn_large(len(values), self._sums, self._counts, at.first_row, self.step, out)
+            drawn_large(len(values), *self._seen(), at.first_row, self.step, out)
         return np.where(np.isfinite(out), out, values)
 
 
@@ -83,6 +99,6 @@ def _folded(values: Map, weights: NDArray[np.float32]) -> Map:
     return second
 
 
-def tile_of(skin: Any) -> Tile:
+def tile_of(skin: SkinMaps) -> Tile:
     """Maps as changes see them."""
     return Tile(skin.maps, skin.sigmas, (), skin.confidence)

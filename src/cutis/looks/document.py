@@ -80,7 +80,7 @@ def _place(where: Sequence[str | int], document: Any) -> str:
             here = here[step]
             told = here.get("name") if isinstance(here, Mapping) else None
             label = f" ({shorten(told)})" if isinstance(told, str) and told else ""
-            said.append(f"{_LISTS.get(name, name)} {step + 1}{label}")
+            said.append(f"{_LISTS.get(name, name) or 'number'} {step + 1}{label}")
             name = ""
         elif isinstance(step, str) and isinstance(here, Mapping) and step in here:
             said += [name] if name else []

@@ -11,14 +11,16 @@ so that the two parts together do what the whole does.
 import abc
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, Literal, Protocol
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from cutis.errors import CutisError
 from cutis.looks.blur import Blur
-from cutis.looks.document import MapName, Part, Radius, Share, texels
+from cutis.looks.document import MapName, Radius, Share, texels
+from cutis.looks.effect import EditPart, Effect
+from cutis.looks.tone import Tone
 from cutis.maps import Edit, Face, Tile
 from cutis.maps.plain import Map
 from cutis.optics import NAMES, Parameter, parameter
@@ -26,53 +28,6 @@ from cutis.optics import NAMES, Parameter, parameter
 Number = Annotated[float, Field(ge=-1e6, le=1e6)]
 Factor = Annotated[float, Field(ge=0, le=1e6)]
 Areas = Literal["all", "detail", "large"]
-
-
-class Effect(Protocol):
-    """An edit that is ready for a face: takes a tile, and weights (h, W) of how much, where."""
-
-    @property
-    def reach(self) -> int:
-        """Rows above and below a row that decide what becomes of it."""
-
-    @property
-    def trust(self) -> bool:
-        """Whether it looks at σ or confidence."""
-
-    def __call__(self, tile: Tile, weight: Map) -> Tile:
-        """The tile changed, with one more count."""
-
-
-class EditPart(Part, abc.ABC):
-    """One edit of a layer."""
-
-    @property
-    @abc.abstractmethod
-    def touches(self) -> frozenset[str]:
-        """Names of the maps that it may change."""
-
-    @property
-    @abc.abstractmethod
-    def reads(self) -> frozenset[str]:
-        """Names of the maps of which it asks more than a texel's own values, before it starts."""
-
-    @property
-    @abc.abstractmethod
-    def placed(self) -> bool:
-        """Whether what becomes of a texel depends on its neighbours or on where it is."""
-
-    @property
-    @abc.abstractmethod
-    def absolute(self) -> bool:
-        """Whether its numbers are amounts of something, which mean what they say in one tissue."""
-
-    @abc.abstractmethod
-    def on_face(self, face: Face) -> Effect:
-        """The edit ready for a face, which is as it stands before the edit."""
-
-    @abc.abstractmethod
-    def __str__(self) -> str:
-        """What it does, as flags say it where they can."""
 
 
 class MapEdit(EditPart):
@@ -420,7 +375,7 @@ def _large(name: str, radius: float | str | None, face: Face) -> Blur:
 
 
 AnyEdit = Annotated[
-    Multiply | Offset | Set | Blend | Floor | Ceiling | Contrast | Soften,
+    Multiply | Offset | Set | Blend | Floor | Ceiling | Contrast | Soften | Tone,
     Field(discriminator="do"),
 ]
 """Every kind of edit that a layer may have. Another kind is one more class here."""

@@ -8,17 +8,20 @@ from pydantic import Field
 
 from cutis.errors import CutisError
 from cutis.looks.document import Part, Share
-from cutis.looks.edits import AnyEdit, Effect
+from cutis.looks.edits import AnyEdit
+from cutis.looks.effect import Effect
 from cutis.looks.folder import Folder
 from cutis.looks.masks import Mask, MaskPart, PaintedPart
 from cutis.looks.pictures import GivenPart, PicturePart, RegionsPart
-from cutis.looks.procedural import PatchesPart
+from cutis.looks.procedural import BlotchesPart, FrecklesPart, PatchesPart
 from cutis.looks.ranges import RangePart
+from cutis.looks.strokes import StrokesPart
 from cutis.maps import Face, Tile
 from cutis.maps.plain import Map
 
 AnyMask = Annotated[
-    PicturePart | RegionsPart | RangePart | PatchesPart, Field(discriminator="part")
+    PicturePart | RegionsPart | RangePart | StrokesPart | PatchesPart | BlotchesPart | FrecklesPart,
+    Field(discriminator="part"),
 ]
 """Every kind of part that a mask may have. Another kind is one more class here."""
 Text = Annotated[str, Field(max_length=10_000)]
@@ -44,7 +47,7 @@ class Layer(Part):
         """So much less of it, inside one more part, which takes the place of procedural ones."""
         mask: tuple[Any, ...] = self.mask
         if part is not None:
-            kept = tuple(one for one in mask if not one.procedural)
+            kept = tuple(one for one in mask if not one.stands_in)
             mask = (*kept, part.model_copy(update={"how": "intersect"}))
         return self.model_copy(update={"amount": self.amount * amount, "mask": mask})
 

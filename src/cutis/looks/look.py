@@ -14,6 +14,7 @@ from pydantic import Field, PrivateAttr, ValidationError
 from cutis.errors import CutisError
 from cutis.looks.document import Part, Share, complaint
 from cutis.looks.edits import edit_of
+from cutis.looks.flags import as_flags
 from cutis.looks.folder import Folder
 from cutis.looks.layer import GIVEN, Layer, LayerOnFace, Text
 from cutis.looks.masks import MaskPart, PaintedPart
@@ -218,6 +219,20 @@ class Look(Part, Recipe):
     def words(self) -> tuple[str, ...]:
         """What it does, a line for each edit of layers that are on."""
         return tuple(line for layer in self._own_layers() if layer.on for line in layer.words())
+
+    def as_flags(self) -> tuple[str, ...]:
+        """Arguments of `cutis edit` that do the same; CutisError where flags cannot say it."""
+        return as_flags(self._own_layers(), self._label, self._folder.path)
+
+    @classmethod
+    def published(cls) -> dict[str, Any]:
+        """The JSON Schema of documents, which `docs/look.schema.json` holds."""
+        found = cls.model_json_schema()
+        found["properties"]["$schema"] = {"type": "string"}
+        for part in (found, *found["$defs"].values()):
+            says = [name for name, one in part["properties"].items() if "const" in one]
+            part["required"] = [*says, *part.get("required", ())]
+        return {"$schema": "https://json-schema.org/draft/2020-12/schema", **found}
 
     # on a face ---------------------------------------------------------------------------------
 

@@ -24,11 +24,13 @@ from cutis.maps.plain import Map
 class Cover(abc.ABC):
     """A mask that is ready for a face: takes a tile and says how much of it counts, (h, W).
 
-    `reach` is how many rows above and below decide what it is, `trust` whether it looks at σ or
+    `reach` is how many rows above and below decide what it is, `level` how many looks
+    at the whole it needs, one after the other (`Face.ask`), `trust` whether it looks at σ or
     confidence, `notes` what was made of its file.
     """
 
     reach: int = 0
+    level: int = 0
     trust: bool = False
     notes: tuple[str, ...] = ()
 
@@ -63,6 +65,11 @@ class MaskPart(Part, abc.ABC):
     def moved(self, old: Path, new: Path) -> "MaskPart":
         """The same with the names of its files as seen from another folder."""
         return self
+
+    @property
+    def stands_in(self) -> bool:
+        """Whether a painted mask takes its place."""
+        return self.procedural
 
     @property
     def placed(self) -> bool:
@@ -113,8 +120,9 @@ class Feathered(Cover):
             return cover(tile), np.ones(tile.maps.shape, dtype=np.float32)
 
         self._field, self.trust = field, cover.trust
-        self._blur = Blur(texels(part.feather, face.shape), field, face, cover.trust)
-        self.reach = cover.reach + self._blur.reach
+        sigma = texels(part.feather, face.shape)
+        self._blur = Blur(sigma, field, face, cover.level, cover.trust)
+        self.reach, self.level = cover.reach + self._blur.reach, self._blur.level
 
     def __call__(self, tile: Tile) -> Map:
         """Values (h, W) in [0, 1]."""

@@ -6,21 +6,13 @@
 
 import difflib
 from functools import cache
-from importlib import resources
 from typing import Any
 
 from cutis.errors import CutisError
 from cutis.looks.look import Look
+from cutis.looks.shipped import document, names
 
-END = ".look.json"
-
-
-@cache
-def names() -> tuple[str, ...]:
-    """Names of all presets, in the order of the alphabet."""
-    folder = resources.files("cutis.data").joinpath("looks")
-    found = (file.name for file in folder.iterdir())
-    return tuple(sorted(name.removesuffix(END) for name in found if name.endswith(END)))
+__all__ = ["names", "preset"]
 
 
 @cache
@@ -30,8 +22,7 @@ def preset(name: str) -> Look:
         near = difflib.get_close_matches(name, names(), 1, 0.5)
         hint = f"did you mean {near[0]}? " if near else ""
         raise CutisError(f"unknown preset {name!r}; {hint}known are {', '.join(names())}")
-    file = resources.files("cutis.data").joinpath("looks", f"{name}{END}")
-    return Look.of_text(file.read_bytes(), name)
+    return Look.of_text(document(name), name)
 
 
 def __getattr__(name: str) -> Any:

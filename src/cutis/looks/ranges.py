@@ -112,7 +112,7 @@ class _Range(Cover):
         self._blur: Blur | None = None
         if part.radius is not None:
             self._blur = Blur(texels(part.radius, face.shape), self._coordinates, face)
-        self.reach = 0 if self._blur is None else self._blur.reach
+            self.reach, self.level = self._blur.reach, self._blur.level
 
     def _ends(self, ends: Ends, face: Face) -> tuple[np.float32, np.float32]:
         first, last = ends if isinstance(ends, tuple) else (ends, ends)

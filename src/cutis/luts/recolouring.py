@@ -106,6 +106,9 @@ class NoFace:
         """Never asked for."""
         raise NotImplementedError
 
+    def keep(self) -> None:
+        """There is nothing to keep."""
+
 
 def fading(error: Floats) -> Floats:
     """Share of an edit for colours that the model misses by `error` ΔE00: smooth from 1 to 0."""

@@ -99,6 +99,7 @@ def estimate(
     model: Model | str = DEFAULT,
     illuminant: LightLike = "D65",
     sigma: bool = True,
+    steady: bool = False,
 ) -> Estimate:
     """Skin maps of a texture, of its file, or of an (H, W, 3) array of linear sRGB.
 
@@ -116,6 +117,9 @@ def estimate(
         The light of the capture, a name or file that `colour.illuminant` takes.
     sigma
         Adds standard deviations and confidence where the model knows them.
+    steady
+        Lets models that can look at neighbours, so that melanin type and oxygenation keep still
+        (`inverse.steady`); without, every texel is found by itself.
 
     Raises
     ------
@@ -126,6 +130,7 @@ def estimate(
     if isinstance(face, str | os.PathLike):
         face = read_texture(face)
     used, capture = load_model(model), in_memory(face, mask)
+    used = used if steady else used.alone
 
     known = survey([lambda: _Open(capture)], used, white, exposure, illuminant)
     maps = {name: np.zeros(capture.shape, np.float32) for name in NAMES}
@@ -189,11 +194,12 @@ def _found(
     capture: Capture, model: Model, known: Surveyed, sigma: bool
 ) -> Iterator[tuple[slice, Map, Map, Found]]:
     """Rows, their colours as captured, cover, and what the model finds in them."""
+    state = {**known.state, "rounding": capture.rounding}
     if model.reach == 0:
         for rows in capture.bands():
             colours, cover = capture.rows(rows)
             seen = known.calibration.apply(colours)
-            yield rows, colours, cover, model.estimate(seen, cover, known.state, sigma=sigma)
+            yield rows, colours, cover, model.estimate(seen, cover, state, sigma=sigma)
         return
     held: list[tuple[Map, Map]] = []  # bands that are read, from row `first` on
     first = read = 0
@@ -206,13 +212,14 @@ def _found(
         while waiting and (read == height or read >= waiting[0].stop + model.reach):
             wanted = waiting.pop(0)
             top = max(0, wanted.start - model.reach)
+            top -= top % model.grid
             bottom = min(height, wanted.stop + model.reach)
             while held and first + len(held[0][1]) <= top:
                 first += len(held.pop(0)[1])
             colours, cover = (np.concatenate(parts) for parts in zip(*held, strict=True))
             wide = slice(top - first, bottom - first)
             seen = known.calibration.apply(colours[wide])
-            found = model.estimate(seen, cover[wide], known.state, sigma=sigma)
+            found = model.estimate(seen, cover[wide], state, sigma=sigma)
             own = slice(wanted.start - first, wanted.stop - first)
             inner = slice(wanted.start - top, wanted.stop - top)
             yield wanted, colours[own], cover[own], found.rows(inner)

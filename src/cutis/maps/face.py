@@ -11,7 +11,7 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from cutis.errors import CutisError
 from cutis.maps.changes import Change, Recipe
@@ -70,8 +70,16 @@ class Source(Protocol):
     def rows(self, rows: slice, trust: bool = True) -> "SkinMaps":
         """Maps of some rows, with their capture where that is at hand."""
 
+    def keep(self) -> None:
+        """Says that rows will be asked for again."""
 
-Memo = dict[tuple[int, ...], tuple[tuple[Recipe, ...], Quantiles]]
+
+See = Callable[[slice, "SkinMaps"], None]
+"""Takes rows, and their maps."""
+Memo = dict[tuple[Any, ...], tuple[Any, Any]]
+"""What was found of a face with something done to it: what that is of, so that its identity does
+not come again, and the finding."""
+Found = TypeVar("Found")
 
 
 class Face:
@@ -87,11 +95,14 @@ class Face:
         done: Sequence[Recipe] = (),
         changes: Sequence[Change] | None = None,
         memo: Memo | None = None,
+        progress: Callable[[int, int, str], None] = lambda done, total, doing: None,
     ) -> None:
         """`changes` is what `done` are on this face, if somebody has made them already."""
         self._source, self._done = source, tuple(done)
         self._given = None if changes is None else tuple(changes)
         self._memo: Memo = {} if memo is None else memo
+        self._asked: list[tuple[int, bool, See]] = []
+        self._progress = progress
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -130,16 +141,38 @@ class Face:
     def before(self, count: int = 0) -> "Face":
         """The same after the first `count` of the recipes only."""
         given = None if self._given is None else self._given[:count]
-        return Face(self._source, self._done[:count], given, self._memo)
+        return Face(self._source, self._done[:count], given, self._memo, self._progress)
 
     def after(self, recipe: Recipe, change: Change) -> "Face":
         """The same with one more recipe applied, which is `change` here."""
-        return Face(self._source, (*self._done, recipe), (*self.changes, change), self._memo)
+        done, changes = (*self._done, recipe), (*self.changes, change)
+        return Face(self._source, done, changes, self._memo, self._progress)
 
     def bands(self, trust: bool = False) -> Iterator[tuple[slice, "SkinMaps"]]:
         """All rows of this tile as they stand, from top to bottom."""
         for rows in self._source.bands():
             yield rows, edited(self._source, rows, self.changes, trust)
+
+    def ask(self, see: See, level: int = 1, trust: bool = False) -> None:
+        """Has `see` shown all rows of this tile as they stand, before `settle` is over.
+
+        Those of one level are shown a row together, and may need what lower levels have seen.
+        `trust`: σ and confidence must be there.
+        """
+        self._asked.append((level, trust, see))
+
+    def settle(self) -> None:
+        """Shows all rows to whom they are still to be shown."""
+        while self._asked:
+            level = min(level for level, _, _ in self._asked)
+            now = [one for one in self._asked if one[0] == level]
+            self._asked = [one for one in self._asked if one[0] != level]
+            self._source.keep()
+            height, width = self.shape
+            for rows, skin in self.bands(any(trust for _, trust, _ in now)):
+                for _, _, see in now:
+                    see(rows, skin)
+                self._progress(min(rows.stop, height) * width, height * width, "looking at it all")
 
     @contextlib.contextmanager
     def opened(self, number: int) -> Iterator["Face"]:
@@ -154,7 +187,7 @@ class Face:
                 "since looks take medians over all tiles"
             )
         with read(path) as file:
-            yield Face(file, self._done, memo=self._memo)
+            yield Face(file, self._done, None, self._memo, self._progress)
 
     @property
     def tiles(self) -> tuple[int, ...]:
@@ -171,15 +204,36 @@ class Face:
             count -= 1
         return self.before(count)._quantiles().percentile(name, share)
 
-    def _quantiles(self) -> Quantiles:
-        key = tuple(map(id, self._done))  # kept with what they are of, so that no id comes again
+    def once(self, owner: object, name: str, find: Callable[[], Found]) -> Found:
+        """What `find` gives, worked out only once for all tiles of a set as they stand.
+
+        `owner` and `name` say what it is.
+        """
+        key = (*map(id, self._done), id(owner), name)
         if key not in self._memo:
+            self._memo[key] = (self._done, owner), find()
+        result: Found = self._memo[key][1]
+        return result
+
+    def over_set(
+        self, owner: object, name: str, find: Callable[["Face"], Found]
+    ) -> tuple[Found, ...]:
+        """What `find` gives of each tile of the set, in order; worked out only once."""
+
+        def all_tiles() -> tuple[Found, ...]:
             found = []
             for number in self.tiles:
                 with self.opened(number) as face:
-                    found.append(face._own())
-            self._memo[key] = self._done, Quantiles.together(found)
-        return self._memo[key][1]
+                    found.append(find(face))
+            return tuple(found)
+
+        return self.once(owner, name, all_tiles)
+
+    def _quantiles(self) -> Quantiles:
+        def together() -> Quantiles:
+            return Quantiles.together(self.over_set(None, "quantiles", Face._own))
+
+        return self.once(None, "all quantiles", together)
 
     def _own(self) -> Quantiles:
         known = self._source.known
@@ -251,3 +305,6 @@ class Held:
     def rows(self, rows: slice, trust: bool = True) -> "SkinMaps":
         """Maps of some rows."""
         return self._skin.rows(rows)
+
+    def keep(self) -> None:
+        """They are here anyway."""

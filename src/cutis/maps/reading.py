@@ -4,16 +4,19 @@ import contextlib
 import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from cutis.errors import CutisError
+from cutis.inverse import Model
 from cutis.inverse.calibration import Calibration
 from cutis.maps.changes import Change, Tile
-from cutis.maps.defaults import OLD_DEFAULT
+from cutis.maps.defaults import DEFAULT, OLD_DEFAULT
 from cutis.maps.face import TileOf, edited
+from cutis.maps.lost import lost_note
 from cutis.maps.plain import Map, Maps, Place
 from cutis.maps.skin_maps import EditedEstimate, Estimate, MadeBy, SkinMaps
 from cutis.maps.source import find_source, open_source, source_note
@@ -25,6 +28,8 @@ from cutis.textures.channels import ChannelFile
 from cutis.textures.closing import Closing
 from cutis.textures.udim import tile_of, udim_pattern
 
+KEPT = 1 << 28
+"""Bytes of maps that are kept, where they will be asked for again."""
 LARGEST = 1e3
 """Of gains, and of the numbers that turn the RGB of one light into that of another."""
 
@@ -34,7 +39,8 @@ class MapsFile(Closing):
 
     `header` is a `Header`, `frame` says where the maps lie on their picture; with `shown` they are
     those of all of it, outside the mask where nothing is stored. Close it, or use it in a with
-    block. Raises CutisError where channels are missing, out of range, or the header is
+    block. `untold` names what the header does not say and should: "model", "calibration". Raises
+    CutisError where channels are missing, out of range, or the header is
     damaged.
     """
 
@@ -46,9 +52,11 @@ class MapsFile(Closing):
                 "make one from a texture with: cutis estimate"
             )
         self._file = ChannelFile(path, shown)
+        self._keeping, self._kept = False, dict[str, Map]()
         try:
             self._check_channels()
             self.shape, self.frame = self._file.shape, self._file.frame
+            self.untold: tuple[str, ...] = ()
             self.header = self._read_header()
         except BaseException:
             self.close()
@@ -65,6 +73,10 @@ class MapsFile(Closing):
     def _read_header(self) -> Header:
         there, metadata = self._file.names, self._file.metadata
         notes = {k[len(PREFIX) :]: str(v) for k, v in metadata.items() if k.startswith(PREFIX)}
+        without = OLD_DEFAULT if notes else DEFAULT  # the first files named no model
+        needed = ("model", "calibration")
+        if "model" not in notes or "source" in notes:  # of fitted spectra there are no gains
+            self.untold = tuple(name for name in needed if name not in notes)
         try:
             calibration = _calibration(notes.pop("calibration", "{}"))
             state = json.loads(notes.pop("survey", "{}"))
@@ -82,7 +94,7 @@ class MapsFile(Closing):
             np.linalg.LinAlgError,
         ) as error:  # fmt: skip
             raise CutisError(f"{self.path.name}: its header is damaged; estimate again") from error
-        model, digest = notes.pop("model", "default"), notes.pop("model_digest", "")
+        model, digest = notes.pop("model", without), notes.pop("model_digest", "")
         rare = tuple(name for name in RARE_NAMES if name in there)
         known = (*NAMES, *rare)
         provenance = {k: v for k, v in notes.items() if k not in (*NAMES, *RARE_NAMES)}
@@ -113,6 +125,20 @@ class MapsFile(Closing):
         """The model, whether or not it is here."""
         return MadeBy(self.header.model, self.header.digest)
 
+    @property
+    def notes(self) -> list[str]:
+        """What people should know of the header."""
+        return [lost_note(self.path, self.untold, self.header.model)] if self.untold else []
+
+    def named(self, model: Model | None, calibration: Calibration | None) -> None:
+        """Takes a calibration, and a model where the header says none, in place of what it says."""
+        if model is not None and "model" in self.untold:
+            self.header = replace(self.header, model=model.name, digest=model.digest)
+        if calibration is not None:
+            self.header = replace(self.header, calibration=calibration)
+        given = {"model": model, "calibration": calibration}
+        self.untold = tuple(name for name in self.untold if given[name] is None)
+
     def close(self) -> None:
         """Lets go of the file."""
         self._file.close()
@@ -123,7 +149,7 @@ class MapsFile(Closing):
 
     def rows(self, rows: slice, trust: bool = True) -> Estimate | EditedEstimate:
         """Maps of some rows, without their capture; σ and confidence only if `trust`."""
-        header, channels = self.header, self._file.rows(rows)
+        header, channels = self.header, self._channels(rows, trust)
         mask = channels.get("mask", np.ones(channels["melanin"].shape, dtype=np.float32))
         if not (mask.min(initial=0) >= 0 and mask.max(initial=0) <= 1):  # NaN fails too
             raise self.no_mask()
@@ -156,6 +182,30 @@ class MapsFile(Closing):
             Estimate(now.with_values(before), **rest), (), Tile(now, spread, header.clamped, sure),
             header.edits, kept=header.looks,
         )  # fmt: skip
+
+    def keep(self) -> None:
+        """Says that rows will be asked for again: they are kept, if KEPT bytes are enough."""
+        self._keeping = True
+
+    def _channels(self, rows: slice, trust: bool) -> dict[str, Map]:
+        header = self.header
+        wanted = {*NAMES, *header.rare, "mask", *(ORIGINAL + name for name in header.changed)}
+        if trust:
+            wanted |= {CONFIDENCE, *(name + SIGMA for name in header.sigmas)}
+        wanted &= set(self._file.names)
+        height, width = self.shape
+        if not self._keeping or 4 * len(wanted) * height * width > KEPT:
+            return self._file.rows(rows, wanted)
+        if not wanted <= set(self._kept):
+            self._kept = {name: np.empty(self.shape, np.float32) for name in wanted}
+            self._read = np.zeros(height, dtype=bool)
+        missing = np.flatnonzero(~self._read[rows]) + rows.indices(height)[0]
+        if len(missing):
+            new = slice(int(missing[0]), int(missing[-1]) + 1)
+            for name, values in self._file.rows(new, set(self._kept)).items():
+                self._kept[name][new] = values
+            self._read[new] = True
+        return {name: self._kept[name][rows] for name in wanted}
 
     def edited(self, rows: slice, changes: Sequence[Change], trust: bool = True) -> SkinMaps:
         """Maps of some rows with changes that are ready for this face applied; see `rows`."""

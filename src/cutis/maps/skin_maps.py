@@ -10,6 +10,7 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from importlib import import_module
 from typing import Any, Literal
 
 import numpy as np
@@ -276,6 +277,16 @@ class SkinMaps(abc.ABC):
                     f"the amount of {edit.parameter} is {array.shape}, the maps are {self.shape}"
                 )
         return self.changed_by(wanted.within(amount, painted))
+
+    def to_tone(self, tone: "str | SkinMaps") -> "EditedEstimate":
+        """The face in another tone, its features kept: `skin.to_tone("ita:-20")`.
+
+        `tone` is `ita:-20`, the median ITA° of its skin; `monk:7`, the measured tone nearest to a
+        swatch; `#8d5524`, the median of its skin in the file; `like:OTHER.skin.exr`, or other maps.
+        Raises CutisError for a tone that no skin has. See docs/tones.md.
+        """
+        looks = import_module("cutis.looks")  # a room behind this one: not before it is asked for
+        return self.apply(looks.tone_look(tone))
 
     # colour ------------------------------------------------------------------------------------
 

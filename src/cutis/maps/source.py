@@ -9,6 +9,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
+from cutis.colour.spaces import Space
 from cutis.errors import CutisError
 from cutis.maps.plain import Map
 from cutis.textures import MaskFile, Orientation, Texture, TextureFile, bands
@@ -21,6 +22,10 @@ class Capture(Protocol):
     def shape(self) -> tuple[int, int]:
         """Height and width in texels."""
 
+    @property
+    def rounding(self) -> float:
+        """Step that encoded colours are rounded to: 1/255 of 8-bit files, 0 where none is known."""
+
     def bands(self) -> Iterator[slice]:
         """Slices of rows that cover it, in an order that is good to read in."""
 
@@ -29,10 +34,10 @@ class Capture(Protocol):
 
 
 class ArrayCapture:
-    """A capture in memory: `colours` (H, W, 3) and `cover` (H, W)."""
+    """A capture in memory: `colours` (H, W, 3), `cover` (H, W) and the step of encoded colours."""
 
-    def __init__(self, colours: Map, cover: Map) -> None:
-        self.colours, self.cover = colours, cover
+    def __init__(self, colours: Map, cover: Map, rounding: float = 0.0) -> None:
+        self.colours, self.cover, self.rounding = colours, cover, rounding
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -62,6 +67,11 @@ class FileCapture:
         """Height and width in texels."""
         return self.texture.shape
 
+    @property
+    def rounding(self) -> float:
+        """Step that encoded colours are rounded to."""
+        return rounding_of(self.texture.space, self.texture.eight_bits)
+
     def bands(self) -> Iterator[slice]:
         """Slices of rows that cover it."""
         return self.texture.bands()
@@ -69,10 +79,14 @@ class FileCapture:
     def rows(self, rows: slice) -> tuple[Map, Map]:
         """Colours and cover of some rows."""
         part = self.texture.rows(rows)
+        return part.linear(), self.cover(part, rows)
+
+    def cover(self, part: Texture, rows: slice) -> Map:
+        """Cover (h, W) of some rows that were read."""
         least = 0.0 if self.mask is None else MaskFile.BLACK
         cover = cover_of_alpha(part) if self.mask is None else self.mask.rows(rows)
         self.seen = self.seen or bool((cover > least).any())
-        return part.linear(), cover
+        return cover
 
     def empty(self) -> CutisError:
         """What to raise when no skin was met."""
@@ -85,6 +99,11 @@ def cover_of_alpha(part: Texture) -> Map:
     """(h, W): 1 where a texture is not transparent, else 0."""
     alpha = part.alpha()
     return np.ones(part.shape, np.float32) if alpha is None else (alpha > 0).astype(np.float32)
+
+
+def rounding_of(space: Space, eight_bits: bool) -> float:
+    """Step of encoded colours in a file of 8 bits, 0 of any finer and of linear ones."""
+    return 1 / 255 if space.encoded and eight_bits else 0.0
 
 
 def in_memory(face: Texture | ArrayLike, mask: ArrayLike | None) -> ArrayCapture:
@@ -107,7 +126,10 @@ def in_memory(face: Texture | ArrayLike, mask: ArrayLike | None) -> ArrayCapture
         raise CutisError("the mask must hold values from 0 to 1")
     if not (cover > 0).any():
         raise CutisError("the mask is empty: nothing is marked as skin")
-    return ArrayCapture(colours, cover)
+    rounding = 0.0
+    if isinstance(face, Texture):
+        rounding = rounding_of(face.space, face.pixels.dtype == np.uint8)
+    return ArrayCapture(colours, cover, rounding)
 
 
 def _linear(face: ArrayLike) -> Map:

@@ -114,8 +114,12 @@ def maps_writer(
     header: Header,
     shape: tuple[int, int],
     dtype: Literal["float", "half"] = "float",
+    statistics: MapStatistics | None = None,
 ) -> Iterator[Callable[["SkinMaps"], None]]:
-    """What `save_maps` does, some rows at a time: yields a function that takes the next rows."""
+    """What `save_maps` does, some rows at a time: yields a function that takes the next rows.
+
+    `statistics` are those of the whole, where somebody else gathers them before the end.
+    """
     if dtype not in ("float", "half"):
         raise CutisError(f"maps are stored as float or half, not {dtype}")
     maps = (*NAMES, *(p.name for p in RARE if p.name in header.rare), "mask")
@@ -125,13 +129,14 @@ def maps_writer(
     trust = (*(name + SIGMA for name in header.sigmas),)
     trust += (CONFIDENCE,) if header.confident else ()
     names = (*maps, *(ORIGINAL + name for name in changed), *trust)
-    attributes, found = header.attributes(path), MapStatistics()
+    attributes, found = header.attributes(path), statistics or MapStatistics()
     late = {f"{PREFIX}quantiles": lambda: found.quantiles().text()}
     frame = noted_frame(header.provenance.get("window", ""), shape)
     with channel_writer(path, names, shape, dtype, attributes, trust, frame, late) as put:
 
         def write(part: "SkinMaps") -> None:
-            found.add(part.coordinates(), part.mask > 0)
+            if statistics is None:
+                found.add(part.coordinates(), part.mask > 0)
             channels: dict[str, Any] = {name: part.map(name) for name in maps[:-1]}
             channels["mask"] = part.mask
             for name in changed:

@@ -49,6 +49,10 @@ class Tissue:
     a whole, β-carotene of the epidermis with a third of it in the dermis, and methaemoglobin in
     place of the other haemoglobin. `absorbers` are rows of the table of `absorbers.py` on top of
     those that all tissues have, and `more` the parameters that they bring.
+
+    `dermis_by_type`, where given, says how the dermis scatters instead of `dermis_scattering`: μs′
+    at 500 nm, cm⁻¹, and its power, below skin whose melanin is all pheomelanin, and the same where
+    it is all eumelanin. Between them reduced mean free paths 1 / μs′ mix as the melanins do.
     """
 
     name: str
@@ -72,6 +76,7 @@ class Tissue:
     rayleigh_fraction: float = 0.48
     mie_power: float = 0.22
     dermis_scattering: float = 1.0
+    dermis_by_type: tuple[tuple[float, float], ...] = ()
     anisotropy_offset: float = 0.62
     anisotropy_slope: float = 0.29e-3
     refractive_index: float = 1.4
@@ -102,6 +107,13 @@ class Tissue:
             raise CutisError(f"tissue {self.name}: rayleigh_fraction must lie in 0 to 1")
         if not self.dermis_scattering > 0:
             raise CutisError(f"tissue {self.name}: dermis_scattering must be above 0")
+        ends = tuple((float(at_500), float(power)) for at_500, power in self.dermis_by_type)
+        object.__setattr__(self, "dermis_by_type", ends)
+        if ends and not (len(ends) == 2 and min(at_500 for at_500, _ in ends) > 0):
+            raise CutisError(
+                f"tissue {self.name}: dermis_by_type must hold two pairs, of a scattering above 0 "
+                "and a power"
+            )
         if self.epidermal_blood and self.rare_chromophores:
             raise CutisError(
                 f"tissue {self.name}: blood in the epidermis and rare chromophores do not go "
@@ -147,8 +159,11 @@ class Tissue:
                         f"tissue {self.name}: the absorption of {substance} in the {layer} is "
                         f"negative or not finite at {lam[bad][0]:g} nm"
                     )
-        for layer, share in zip(LAYERS, (1.0, self.dermis_scattering), strict=True):
-            mu = share * self.reduced_scattering(lam)
+        scattering = (
+            ("epidermis", self.reduced_scattering(lam)),
+            *(("dermis", self.dermis_reduced_scattering(lam, share)) for share in (0.0, 1.0)),
+        )
+        for layer, mu in scattering:
             bad = ~(np.isfinite(mu) & (mu > 0))
             if bad.any():
                 raise CutisError(
@@ -194,12 +209,36 @@ class Tissue:
         recipe, pure = [], []
         for layer in LAYERS:
             rest = REST[layer](self, lam)
-            rows = [rest]
+            rows, holds = [rest], []
             for a in self.table(layer):
                 rows.append(a.amount * (a.absorption(self, lam) - (rest if a.room else 0.0)))
-                recipe.append([TIMES * (n in a.times) + WITHOUT * (n in a.without) for n in names])
+                holds.append([TIMES * (n in a.times) + WITHOUT * (n in a.without) for n in names])
+            if layer == "dermis" and self.dermis_by_type:
+                rows, holds = self._longer_paths(rows, holds, lam)
+            recipe += holds
             pure.append(np.array(rows))
         return np.array(recipe, dtype=np.int64), pure[0], pure[1]
+
+    def _longer_paths(
+        self, rows: list[NDArray[np.float64]], holds: list[list[int]], lam: NDArray[np.float64]
+    ) -> tuple[list[NDArray[np.float64]], list[list[int]]]:
+        """The dermis with μa times μs′ of the pheomelanin's end over its own, k = 1 + φ (k₁ − 1).
+
+        A half space has no length, so that its albedo depends on μa / μs alone: absorption that is
+        k times as strong stands for scattering that is as much weaker. μa k = μa (1 − φ) + k₁ μa φ
+        is linear in the share of eumelanin φ, as mixtures are.
+        """
+        share = [p.name for p in self.every_parameter].index("eumelanin")
+        rest, *others = rows
+        longer = self.dermis_reduced_scattering(lam, 0.0) / self.dermis_reduced_scattering(lam, 1.0)
+        alone = [0] * len(holds[0])
+        alone[share] = TIMES
+        made, held = [rest, (longer - 1) * rest], [alone]
+        for row, hold in zip(others, holds, strict=True):
+            for kind, factor in ((WITHOUT, 1.0), (TIMES, longer)):
+                made.append(factor * row)
+                held.append([kind if i == share else h for i, h in enumerate(hold)])
+        return made, held
 
     def absorption(
         self, layer: str, values: Mapping[str, ArrayLike], wavelength: ArrayLike
@@ -247,9 +286,31 @@ class Tissue:
         mie = (1.0 - self.rayleigh_fraction) * x**-self.mie_power
         return self.scattering_500 * (rayleigh + mie)
 
+    def dermis_reduced_scattering(
+        self, wavelength: ArrayLike, eumelanin: ArrayLike = 0.0
+    ) -> NDArray[np.float64]:
+        """μs′ of the dermis, cm⁻¹; shares of eumelanin (...), wavelengths (n,) → (..., n).
+
+        The shares count where there is `dermis_by_type` alone; without, the result is (n,).
+        """
+        lam = np.asarray(wavelength, dtype=np.float64)
+        if not self.dermis_by_type:
+            return self.dermis_scattering * self.reduced_scattering(lam)
+        pheo, eu = (at_500 * (lam / 500.0) ** -power for at_500, power in self.dermis_by_type)
+        share = np.asarray(eumelanin, dtype=np.float64)
+        share = share[..., None] if lam.ndim else share
+        return np.asarray(1.0 / ((1 - share) / pheo + share / eu))
+
     def scattering(self, wavelength: ArrayLike) -> NDArray[np.float64]:
-        """μs = μs′ / (1 − g), cm⁻¹, of the epidermis and, times `dermis_scattering`, the dermis."""
+        """μs = μs′ / (1 − g) of the epidermis, cm⁻¹."""
         return self.reduced_scattering(wavelength) / (1.0 - self.anisotropy(wavelength))
+
+    def scattering_below(
+        self, wavelength: ArrayLike, eumelanin: ArrayLike = 0.0
+    ) -> NDArray[np.float64]:
+        """μs of the dermis, cm⁻¹, as `dermis_reduced_scattering` has it."""
+        below = self.dermis_reduced_scattering(wavelength, eumelanin)
+        return below / (1.0 - self.anisotropy(wavelength))
 
     def epidermis_absorption(
         self,
@@ -387,7 +448,31 @@ MEASURED2026 = Tissue(
 """Calibrated on thousands of measured skins inside published ranges; five free parameters as in
 `ALIAGA2022`. Its albedo goes with a surface of reflectance 0.028 (docs/decisions/0022)."""
 
-TISSUES = {tissue.name: tissue for tissue in (ALIAGA2022, MEASURED2026)}
+MEASURED2026B = Tissue(
+    name="measured2026b",
+    eumelanin_scale=6.6e11 * 550.0 ** (3.48 - 3.33),
+    eumelanin_power=-3.48,
+    pheomelanin_scale=2.9e15 * 550.0 ** (4.95 - 4.75),
+    pheomelanin_power=-4.95,
+    baseline_scale=0.0,
+    baseline_offset=0.244,
+    baseline_exponential=85.3,
+    hemoglobin_table="bosschaart2014-prahl1999",
+    hemoglobin_shift=-2.7,
+    bilirubin=0.008,
+    beta_carotene_epidermis=1.6e-3,
+    carotene_shift=15.0,
+    scattering_500=72.0,
+    rayleigh_fraction=0.0,
+    mie_power=1.35,
+    dermis_by_type=((80.0, 0.7), (14.5, 2.4)),
+    dimension=3,
+    boundary="fresnel",
+)
+"""The successor of `MEASURED2026`: the scattering of the dermis differs between skins
+(docs/decisions/0029)."""
+
+TISSUES = {tissue.name: tissue for tissue in (ALIAGA2022, MEASURED2026, MEASURED2026B)}
 """Tissues by name: those with the five parameters of skin maps, which commands take."""
 
 

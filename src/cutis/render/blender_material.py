@@ -7,21 +7,20 @@ relative to itself, so that a folder with both can be moved.
 
 import json
 import shutil
-import subprocess
-import tempfile
 from importlib import resources
 from pathlib import Path
 
 from cutis.errors import CutisError
-from cutis.render.blender import Blender, find_blender, quiet_environment
+from cutis.render.blender import Blender, find_blender
+from cutis.render.confined import end, spoken, started, words
 from cutis.render.cycles import INDEX, METHOD, facing
 from cutis.render.material import NEUTRAL, Material
 from cutis.render.scene import Scene
 from cutis.textures import replacing
+from cutis.textures.scratch import scratch_folder
 
 PREVIEW = 128
 """Pixels along a side of the picture in the asset browser."""
-_PATIENCE = 600  # seconds
 
 
 def write_blender(material: Material, path: Path, blender: Blender | None = None) -> None:
@@ -33,8 +32,7 @@ def write_blender(material: Material, path: Path, blender: Blender | None = None
     """
     blender = blender or find_blender()
     scene = preview_scene(material, path.parent)
-    with tempfile.TemporaryDirectory(prefix="cutis-blend-", ignore_cleanup_errors=True) as name:
-        folder = Path(name)
+    with scratch_folder() as folder:
         made = folder / "material.blend"
         job = scene.job(made) | {"asset": _asset(material)}
         (folder / "job.json").write_text(json.dumps({"pictures": [job]}), encoding="utf-8")
@@ -81,18 +79,17 @@ def _asset(material: Material) -> dict[str, object]:
 
 
 def _run(command: list[str], folder: Path) -> None:
+    process, last = started(command, folder), "nothing"
     try:
-        done = subprocess.run(
-            command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-            timeout=_PATIENCE, env=dict(quiet_environment(folder)), cwd=folder,
-        )  # fmt: skip
-    except subprocess.TimeoutExpired as error:
-        raise CutisError(f"Blender did not write the material in {_PATIENCE} s") from error
-    lines = done.stdout.decode("utf-8", "replace").splitlines()
-    events = [json.loads(line[6:]) for line in lines if line.startswith("CUTIS {")]
-    told = [event["message"] for event in events if event["event"] == "error"]
-    if told:
-        raise CutisError(told[0])
-    if done.returncode:
-        last = next((line for line in reversed(lines) if line.strip()), "nothing")
-        raise CutisError(f"Blender ended with status {done.returncode}; it said: {last[:200]}")
+        for text in spoken(process):
+            if text.startswith("CUTIS {"):
+                event = json.loads(text[6:])
+                if event["event"] == "error":
+                    raise CutisError(words(event["message"]))
+            elif text:
+                last = text
+        if process.wait():
+            raise CutisError(f"Blender ended with status {process.returncode}; it said: "
+                             f"{words(last)}")  # fmt: skip
+    finally:
+        end(process)

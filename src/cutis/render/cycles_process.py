@@ -9,7 +9,6 @@ import json
 import os
 import shutil
 import signal
-import subprocess
 import tempfile
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -18,11 +17,13 @@ from pathlib import Path
 from typing import Any
 
 from cutis.errors import CutisError
-from cutis.render.blender import Blender, find_blender, quiet_environment
+from cutis.render.blender import Blender, find_blender
+from cutis.render.confined import PATIENCE, end, spoken, started, words
 from cutis.render.scene import Scene
 from cutis.textures.atomic import replacing
+from cutis.textures.scratch import scratch_folder
 
-_GRACE = 3.0  # seconds between asking a process to end and making it
+_SLOW = 2e-5  # seconds more for each pixel that samples may take
 _KEPT = 2000  # lines of its output that are kept for the log of a failure
 
 Progress = Callable[[int, int, str], None]
@@ -34,12 +35,14 @@ def render(
     blender: Blender | None = None,
     progress: Progress | None = None,
     finished: Callable[[Path], None] | None = None,
+    note: Callable[[str], None] | None = None,
 ) -> str:
     """Renders scenes into EXR files, float, linear Rec.709, and returns the device's name.
 
     pictures: scenes and the files to write. Neighbours that share a mesh or textures save loading
     them again. blender: by default `find_blender()`. finished: called with each file once it is
-    whole; what it raises ends the job, as an interrupt does, and Blender with it.
+    whole; what it raises ends the job, as an interrupt does, and Blender with it. note: told what
+    people should know, such as parts of the mesh that the texture does not cover.
 
     Raises CutisError where Blender is missing or fails, or a mesh or texture cannot be used; the
     pictures finished before stay.
@@ -52,14 +55,13 @@ def render(
         if not path.parent.is_dir():
             raise CutisError(f"{path}: the folder {path.parent} does not exist; create it first")
     blender = blender or find_blender()
-    with tempfile.TemporaryDirectory(prefix="cutis-render-", ignore_cleanup_errors=True) as name:
-        folder = Path(name)
+    with scratch_folder() as folder:
         jobs = [scene.job(folder / f"{i}.exr") for i, (scene, _) in enumerate(pictures)]
         (folder / "job.json").write_text(json.dumps({"pictures": jobs}))
         script = resources.files("cutis.data").joinpath("blender", "scene.py")
         with resources.as_file(script) as file:
             command = blender.command(file, str(folder / "job.json"))
-            return _run(command, folder, pictures, progress, finished)
+            return _run(command, folder, pictures, progress, finished, note)
 
 
 def _run(
@@ -68,26 +70,17 @@ def _run(
     pictures: Sequence[tuple[Scene, Path]],
     progress: Progress | None,
     finished: Callable[[Path], None] | None,
+    note: Callable[[str], None] | None,
 ) -> str:
-    process = subprocess.Popen(
-        command,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        env=dict(quiet_environment(folder)),
-        cwd=folder,
-        # A terminal's Ctrl-C reaches us alone; we end the process.
-        start_new_session=True,
-    )
+    process = started(command, folder)
     total = sum(scene.samples for scene, _ in pictures)
     before, current, device = 0, 0, ""
     said: collections.deque[str] = collections.deque(maxlen=_KEPT)
     try:
         if progress:
             progress(0, total, "starting Blender")
-        assert process.stdout is not None
-        for line in process.stdout:
-            text = line.decode("utf-8", "replace").rstrip()
+        largest = max(scene.width * scene.height for scene, _ in pictures)
+        for text in spoken(process, PATIENCE + _SLOW * largest):
             event = _event(text)
             if event is None:
                 if text:
@@ -96,8 +89,10 @@ def _run(
             kind, current = event["event"], event.get("picture", current)
             scene, path = pictures[current]
             if kind == "error":
-                raise CutisError(event["message"])
-            if kind == "device":
+                raise CutisError(words(event["message"]))
+            if kind == "note" and note:
+                note(words(event["message"]))
+            elif kind == "device":
                 device = event["name"]
             elif kind == "sample" and progress:
                 progress(min(before + event["sample"], total), total, path.stem)
@@ -116,7 +111,7 @@ def _run(
             raise _failure(status, current, len(pictures), said)
         return device
     finally:
-        _end(process)
+        end(process)
 
 
 def _event(line: str) -> dict[str, Any] | None:
@@ -128,19 +123,6 @@ def _event(line: str) -> dict[str, Any] | None:
         if isinstance(event, dict) and "event" in event:
             return event
     return None
-
-
-def _end(process: subprocess.Popen[bytes]) -> None:
-    """Ends the process and what it started, if it still runs."""
-    if process.poll() is None:
-        process.terminate()
-        try:
-            process.wait(_GRACE)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
-    if process.stdout:
-        process.stdout.close()
 
 
 def _failure(status: int, number: int, count: int, said: Sequence[str]) -> CutisError:

@@ -8,7 +8,7 @@ import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
 
-from cutis.colour import LINEAR, SRGB
+from cutis.colour import LINEAR, SRGB, Space
 from cutis.errors import CutisError
 from cutis.textures import Texture, read_texture, replacing, write_texture
 
@@ -38,17 +38,25 @@ def write_picture(
     write_texture(picture, path)
 
 
-def write_animation(pictures: Sequence[Path], path: Path) -> None:
-    """Writes a looping WebP of pictures that `write_picture` made; CutisError without any."""
+def write_animation(
+    pictures: Sequence[Path], path: Path, space: str | Space = "auto", longest: int = 0
+) -> None:
+    """Writes a looping WebP of pictures in files; CutisError without any.
+
+    `space` is that of their colours. Where `longest` is given, they are shown in so many pixels of
+    the longer side at most: means of squares of theirs.
+    """
     from PIL import Image
 
     if not pictures:
         raise CutisError("a moving preview needs pictures")
 
     def shown(file: Path) -> Image.Image:
-        light = read_texture(file).linear()
+        light = read_texture(file, space).linear()
         blank = Texture(np.zeros(light.shape, np.uint8), ("R", "G", "B"), SRGB)
-        return Image.fromarray(blank.with_linear(light, np.ones(light.shape[:2], bool)).pixels)
+        picture = blank.with_linear(light, np.ones(light.shape[:2], bool)).pixels
+        step = max(1, -(-max(light.shape[:2]) // longest)) if longest else 1
+        return Image.fromarray(picture).reduce(step)
 
     first, *others = (shown(file) for file in pictures)
     with replacing(path) as partial:

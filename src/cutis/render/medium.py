@@ -26,8 +26,11 @@ from cutis.optics import WAVELENGTHS, Tissue
 
 MM_PER_CM = 10.0
 """Millimetres in a centimetre: a coefficient in cm⁻¹ is a length of 10 mm over it."""
-BLOOD, OXYGENATION = 65, 17
-"""Nodes of the table over blood (equal steps of its fourth root) and oxygenation."""
+BLOOD, OXYGENATION, TYPE = 65, 17, 9
+"""Nodes of the table over blood (equal steps of its fourth root), oxygenation and, where the dermis
+scatters by it, the share of eumelanin."""
+SHARE = 0.3
+"""Share of eumelanin where no map says it: about the median of measured skins."""
 
 
 def mean_free_path(tissue: Tissue, anisotropy: float = 0.0) -> NDArray[np.float64]:
@@ -35,15 +38,22 @@ def mean_free_path(tissue: Tissue, anisotropy: float = 0.0) -> NDArray[np.float6
 
     `anisotropy` is the g that the renderer walks with.
     """
-    scattering = tissue.reduced_scattering(WAVELENGTHS) * tissue.dermis_scattering
+    scattering = tissue.dermis_reduced_scattering(WAVELENGTHS, SHARE)
     return (1 - anisotropy) * _bands(MM_PER_CM / scattering)
 
 
 def mean_free_path_in(
-    tissue: Tissue, blood: ArrayLike, oxygenation: ArrayLike, anisotropy: float = 0.0
+    tissue: Tissue,
+    blood: ArrayLike,
+    oxygenation: ArrayLike,
+    anisotropy: float = 0.0,
+    eumelanin: ArrayLike = SHARE,
 ) -> NDArray[np.float64]:
-    """(..., 3) the same in mm with the absorption of a dermis of `blood`, `oxygenation` (...)."""
-    scattering = tissue.reduced_scattering(WAVELENGTHS) * tissue.dermis_scattering
+    """(..., 3) the same in mm with the absorption of a dermis of `blood`, `oxygenation` (...).
+
+    The share of `eumelanin` (...) counts where the tissue's dermis scatters by it.
+    """
+    scattering = tissue.dermis_reduced_scattering(WAVELENGTHS, eumelanin)
     absorption = tissue.dermis_absorption(blood, oxygenation, WAVELENGTHS)
     return (1 - anisotropy) * _bands(MM_PER_CM / (scattering + absorption))
 
@@ -52,6 +62,7 @@ def of_maps(skin: SkinMaps, anisotropy: float = 0.0) -> NDArray[np.float32]:
     """(H, W, 3) `mean_free_path_in` of every texel, from a table; off the mask `mean_free_path`."""
     table = _table(skin.tissue)
     place = np.stack([
+        np.clip(skin.eumelanin, 0, 1) * (table.shape[1] - 1),
         np.sqrt(np.sqrt(np.clip(skin.blood, 0, 1))) * (BLOOD - 1),
         np.clip(skin.oxygenation, 0, 1) * (OXYGENATION - 1),
     ])  # fmt: skip
@@ -71,8 +82,11 @@ def _bands(lengths: NDArray[np.float64]) -> NDArray[np.float64]:
 
 @lru_cache(maxsize=8)
 def _table(tissue: Tissue) -> NDArray[np.float64]:
-    """(3, BLOOD, OXYGENATION) isotropic mean free paths in mm."""
-    blood, oxygenation = np.meshgrid(
-        np.linspace(0, 1, BLOOD) ** 4, np.linspace(0, 1, OXYGENATION), indexing="ij"
+    """(3, TYPE or 1, BLOOD, OXYGENATION) isotropic mean free paths in mm."""
+    share, blood, oxygenation = np.meshgrid(
+        np.linspace(0, 1, TYPE if tissue.dermis_by_type else 1),
+        np.linspace(0, 1, BLOOD) ** 4,
+        np.linspace(0, 1, OXYGENATION),
+        indexing="ij",
     )
-    return np.moveaxis(mean_free_path_in(tissue, blood, oxygenation), -1, 0)
+    return np.moveaxis(mean_free_path_in(tissue, blood, oxygenation, 0.0, share), -1, 0)

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from cutis.errors import CutisError
+from cutis.textures.udim import TOKEN, udim_tiles
 
 MESHES = ("sphere", "patch")
 """Meshes that need no file: a ball as high as a head, and a flat square of 200 mm."""
@@ -20,7 +21,9 @@ DEVICES = ("auto", "cpu", "gpu")
 
 RGB = tuple[float, float, float]
 Source = RGB | Path
-"""Three numbers, one for each of linear Rec.709's channels, or an EXR file with them."""
+"""Three numbers, one for each of linear Rec.709's channels, or an EXR file with them.
+
+NAME.<UDIM>.exr is one of several tiles."""
 
 
 @dataclass(frozen=True)
@@ -156,7 +159,9 @@ def _source(name: str, value: Source, low: float, high: float) -> None:
 
 
 def _file(name: str, path: Path) -> None:
-    if not path.is_file():
+    if TOKEN in path.name:
+        udim_tiles(path)
+    elif not path.is_file():
         raise CutisError(f"{path}: there is no such file to take the {name} from")
 
 

@@ -60,6 +60,7 @@ class Skin(Closing):
             if self.path.name.endswith(MAPS):
                 self.maps = MapsFile(self.path, shown=True)
                 self.shape = self.maps.shape
+                self.notes += self.maps.notes
                 number = self.maps.provenance.get("source_orientation", "")
                 if number in _TURNED:
                     self.notes.append(

@@ -35,6 +35,11 @@ ADVICE = {
 def verdict(report: Report) -> str:
     """One sentence on how well the model explains the capture."""
     colour = report.colour
+    if report.doubts:
+        return (
+            "This may be no albedo of skin, or not as its file says; see the doubts below before "
+            "using the maps, however well the model explains its colours."
+        )
     if colour is None:
         return (
             "No texel inside the mask has the colour of skin, so there is no colour error to "
@@ -96,6 +101,9 @@ def calibration(found: CalibrationNumbers) -> Iterator[str]:
 
 def findings(report: Report) -> Iterator[tuple[str, str]]:
     """(level, sentences) on what the maps of this report can be trusted for."""
+    for doubt in report.doubts:
+        said = doubt.sentence[:1].upper() + doubt.sentence[1:]
+        yield "doubt", f"{said} {doubt.hint}".rstrip()
     yield from _of_colour(report)
     for name, share in report.clamped.items():
         if share > MANY:
@@ -121,11 +129,14 @@ def findings(report: Report) -> Iterator[tuple[str, str]]:
                 f"{percent(unsure)} of the mask have a colour that is hardly one of skin; what is "
                 "said of the maps below is said of the rest.",
             )
-        for name, found in told:
+        for name, found in () if report.doubts else told:
             if found is not None:
                 level, known = found
                 spread = trust_words.spread(report.maps, name)
                 yield level, f"{name.capitalize()}: {known}, {spread} (median σ). {ADVICE[level]}"
+    if report.doubts:
+        yield "doubt", "All five maps: the input is doubtful, and so are they."
+    if report.doubts or any(found for _, found in told):
         return
     yield (
         "good",
@@ -147,7 +158,9 @@ def findings(report: Report) -> Iterator[tuple[str, str]]:
 
 def fixed(report: Report, name: str) -> tuple[str, str]:
     """A level and a few words on how far a map is known: what σ says, else FIXED."""
-    return trust_words.known(report.maps, name) or FIXED[name]
+    doubted = bool(report.doubts)
+    found = trust_words.known(report.maps, name, doubted)
+    return found or (("doubt", "the input is doubtful") if doubted else FIXED[name])
 
 
 def next_steps(report: Report, face: str, maps: str) -> Iterator[tuple[str, str]]:

@@ -27,7 +27,7 @@ class RunningReport:
     def __init__(self, model: Model, calibration: Calibration, shape: tuple[int, int]) -> None:
         """Of an estimate by a model with a calibration, (H, W) texels in all."""
         self._model, self._calibration, self._shape = model, calibration, shape
-        self._maps, self._trust = MapStatistics(), TrustStatistics()
+        self.statistics, self._trust = MapStatistics(), TrustStatistics()
         self._errors = Histogram(0.0, 100.0)
         self._angles = Histogram(-180.0, 180.0)
         self._tallies = np.zeros(5)  # texels inside, below 0, above 1, out of gamut; squares
@@ -55,13 +55,13 @@ class RunningReport:
         self._errors.add(errors[where])
         self._angles.add(angles[where])
         u = skin.coordinates()
-        self._maps.add(u, inside)
+        self.statistics.add(u, inside)
         self._trust.add(skin.sigmas, skin.confidence, u, inside)
         self._smoothness.add(u, skin.source, where)
 
     def finish(self) -> Report:
         """The numbers; see `report`."""
-        statistics, how = self._maps, self._calibration
+        statistics, how = self.statistics, self._calibration
         masked, below, above = (int(count) for count in self._tallies[:3])
         percentiles, histograms = statistics.percentiles(), statistics.histograms()
         trust, count = self._trust.finish(self._model), self._errors.count

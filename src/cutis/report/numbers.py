@@ -78,12 +78,22 @@ class RegionNumbers:
 
 
 @dataclass(frozen=True)
+class Doubt:
+    """Why the input may be no albedo of skin: a kind of `checks`, a sentence, how to go on."""
+
+    kind: str
+    sentence: str
+    hint: str = ""
+
+
+@dataclass(frozen=True)
 class Report:
     """The numbers of one estimate; see `cutis.report.report` for what they mean.
 
     What is not known is None or empty: `colour` and `smoothness` without a skin texel, regions
     without a picture of them, `low_confidence` and what maps say of σ where the model has none.
-    `notes` say in words what was chosen in the files, or not believed.
+    `notes` say in words what was chosen in the files, or not believed; `doubts` what speaks
+    against the input, for whose sake no map is called well known.
     """
 
     model: str = ""
@@ -101,6 +111,7 @@ class Report:
     colorspace: str | None = None
     regions: tuple[RegionNumbers, ...] = ()
     notes: tuple[str, ...] = ()
+    doubts: tuple[Doubt, ...] = ()
 
     @property
     def skin_share(self) -> float:
@@ -123,6 +134,7 @@ class Report:
             if "maps" in known:
                 known["maps"] = {name: _map(row) for name, row in known["maps"].items()}
             known["regions"] = tuple(_region(one) for one in known.get("regions", ()))
+            known["doubts"] = tuple(_made(Doubt, one) for one in known.get("doubts", ()))
             found = _made(cls, known)
         except (TypeError, KeyError, AttributeError, ValueError) as error:
             raise CutisError(f"this is no report of an estimate ({error})") from None

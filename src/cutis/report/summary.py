@@ -18,6 +18,8 @@ def before(report: Report) -> Iterator[str]:
     known = report.calibration
     yield f"colour space: {report.colorspace}"
     yield from report.notes
+    for doubt in report.doubts:
+        yield f"doubtful input ({doubt.kind}): {doubt.sentence} {doubt.hint}".rstrip()
     light = f", captured under {known.illuminant}" if known.illuminant != "D65" else ""
     gains = ", ".join(f"{gain:.3f}" for gain in known.gains)
     yield f"gains {gains} ({known.origin}), model {report.model}{light}"
@@ -41,9 +43,9 @@ def after(report: Report, face: str, maps: str) -> Iterator[str]:
             f"{colour.delta_e_mean:.3f}, 95 % {colour.delta_e_p95:.3f}, "
             f"out of gamut {100 * colour.out_of_gamut:.1f} %, ITA {colour.ita_median:.0f}°"
         )
-        told = list(lines(report.maps, report.low_confidence))
+        told = list(lines(report.maps, report.low_confidence, bool(report.doubts)))
         yield from told
-        if not told:
+        if not told and not report.doubts:
             yield (
                 "On skin colours RGB fixes melanin and blood well, thickness less, and says little "
                 "of eumelanin and oxygenation."
@@ -61,4 +63,6 @@ def line(report: Report) -> str:
     colour = report.colour
     if colour is None:
         return "no skin colours"
-    return f"ΔE00 {colour.delta_e_mean:.3f}, out of gamut {percent(colour.out_of_gamut)}"
+    said = f"ΔE00 {colour.delta_e_mean:.3f}, out of gamut {percent(colour.out_of_gamut)}"
+    kinds = ", ".join(doubt.kind for doubt in report.doubts)
+    return f"{said}; doubtful input: {kinds}" if kinds else said

@@ -25,11 +25,16 @@ Maps = Mapping[str, MapNumbers]
 """What a report says of each map, by name."""
 
 
-def known(maps: Maps, name: str) -> tuple[str, str] | None:
-    """A level of `words.LEVELS` and words on how far a map is known; None without σ."""
+def known(maps: Maps, name: str, doubted: bool = False) -> tuple[str, str] | None:
+    """A level of `words.LEVELS` and words on how far a map is known; None without σ.
+
+    σ takes the colour for one of skin: where the input is `doubted` no map is known from it.
+    """
     informed = maps[name].informed if name in maps else None
     if informed is None or not math.isfinite(informed):
         return None
+    if doubted:
+        return "doubt", "not to be trusted, as the input is doubtful"
     if informed >= WELL:
         return "good", "well known"
     if informed >= ROUGHLY:
@@ -56,12 +61,13 @@ def _middle(row: MapNumbers | None) -> float:
     return row.median if row.sure_median is None else row.sure_median
 
 
-def lines(maps: Maps, low_confidence: float | None) -> Iterator[str]:
+def lines(maps: Maps, low_confidence: float | None, doubted: bool = False) -> Iterator[str]:
     """A line for each map with σ, and one where many texels are not sure to be skin."""
     for name in maps:
-        found = known(maps, name)
+        found = known(maps, name, doubted)
         if found is not None:
-            yield f"{name}: {found[1]}, {spread(maps, name)}"
+            spread_of = "" if doubted else f", {spread(maps, name)}"
+            yield f"{name}: {found[1]}{spread_of}"
     if low_confidence is not None and low_confidence > UNSURE:
         yield (
             f"{100 * low_confidence:.0f} % of the mask have a colour that is hardly one of skin; "

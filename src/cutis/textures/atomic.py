@@ -53,7 +53,7 @@ def replacing(path: Name) -> Iterator[Path]:
     held = -1
     try:
         held = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666)
-        _locked(held)
+        locked(held)
         with contextlib.suppress(FileNotFoundError):
             os.chmod(temporary, target.stat().st_mode & 0o777)
         yield temporary
@@ -136,13 +136,13 @@ def sweep(folder: Path) -> None:
             if what_else(status.st_mode) is None and time.time() - status.st_mtime > _FRESH:
                 descriptor = os.open(path, os.O_RDONLY)
                 try:
-                    if _locked(descriptor):
+                    if locked(descriptor):
                         path.unlink()
                 finally:
                     os.close(descriptor)
 
 
-def _locked(descriptor: int) -> bool:
+def locked(descriptor: int) -> bool:
     """Whether a file is now locked by us; it stays so until its descriptor is closed."""
     try:
         import fcntl

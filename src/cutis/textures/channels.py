@@ -170,14 +170,20 @@ class ChannelFile(Closing):
         """Slices of rows that cover the file, of about half a million texels each."""
         return bands(self.shape, self._source.step)
 
-    def rows(self, rows: slice) -> dict[str, NDArray[np.float32]]:
-        """Channels (h, W) by name, float32, of some rows."""
+    def rows(
+        self, rows: slice, wanted: Collection[str] | None = None
+    ) -> dict[str, NDArray[np.float32]]:
+        """Channels (h, W) by name, float32, of some rows: all, or those that are wanted."""
         pixels = self._source.rows(rows)
-        planes = np.empty((pixels.shape[2], *pixels.shape[:2]), np.float32)
+        columns = [
+            column for column, name in enumerate(self.names) if wanted is None or name in wanted
+        ]
+        planes = np.empty((len(columns), *pixels.shape[:2]), np.float32)
         for top in range(0, len(pixels), _TOGETHER):
             some = slice(top, top + _TOGETHER)
-            planes[:, some] = np.moveaxis(pixels[some], 2, 0)
-        return dict(zip(self.names, planes, strict=True))
+            part = pixels[some] if wanted is None else pixels[some][..., columns]
+            planes[:, some] = np.moveaxis(part, 2, 0)
+        return dict(zip([self.names[column] for column in columns], planes, strict=True))
 
 
 def read_channels(path: str | os.PathLike[str]) -> tuple[dict[str, NDArray[np.float32]], Metadata]:

@@ -19,6 +19,10 @@ _NEAR = 4 / 255
 _TWO_VALUED = 0.9  # share of texels that are black or white in a channel that is a mask
 
 
+class WrongSize(CutisError):
+    """A mask that is not of the size of its texture."""
+
+
 class MaskFile(Closing):
     """An open mask, read some rows at a time; see `read_mask`, also for errors.
 
@@ -56,7 +60,7 @@ class MaskFile(Closing):
         size, wanted = (f"{w} × {h}" for h, w in (theirs.display, ours.display))
         stored = "" if ours.whole else f" (of which {ours.shape[1]} × {ours.shape[0]} are stored)"
         what = f"the mask has {size} texels, the texture {wanted}{stored}; resize it"
-        raise problem(self.path, what)
+        raise WrongSize(str(problem(self.path, what)))
 
     def _find(self) -> None:
         """Which channels are the mask."""

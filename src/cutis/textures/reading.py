@@ -80,6 +80,11 @@ class TextureFile(Closing):
             if config:
                 self.notes.append(f"its colour space {given.name} is that of {config}")
 
+    @property
+    def eight_bits(self) -> bool:
+        """Whether values are stored in 8 bits."""
+        return self._source.dtype.name == "uint8"
+
     def close(self) -> None:
         """Lets go of the file."""
         self._source.close()

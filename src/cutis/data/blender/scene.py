@@ -13,6 +13,7 @@ textures that one picture shares with the one before stay loaded.
 What happens is told on standard output, one line of JSON after the word CUTIS each:
 
     {"event": "device", "name": "CPU"}
+    {"event": "note", "picture": 0, "message": "..."}
     {"event": "sample", "picture": 0, "sample": 12}
     {"event": "done", "picture": 0, "seconds": 9.1}
     {"event": "error", "picture": 0, "message": "..."}
@@ -43,6 +44,8 @@ MARGIN = 0.06  # share of the picture's half side that stays free around the mes
 HEAD_HEIGHT = 240.0  # mm, vertex to chin and some neck; a mesh of unknown scale is taken for that
 MOST_VERTICES, MOST_BYTES = 20_000_000, 4 << 30
 LINEAR = "Linear Rec.709"
+UDIM = "<UDIM>"  # in the name of a texture of several tiles, 1001 to 1999
+BESIDE = 1e-3  # of a texture's side that texture coordinates may be outside
 
 # The two lobes of the surface: roughness as a factor of the scene's, and share. Factors and shares
 # are those that the Unreal Engine has for skin by default; the roughness they multiply is chosen.
@@ -61,6 +64,14 @@ class Problem(Exception):
 def tell(**event):
     """A line of its own, whatever half a line of Blender's may still be in the pipe."""
     os.write(1, f"\nCUTIS {json.dumps(event)}\n".encode())
+
+
+def last_word(error):
+    """What an error comes to, without the traceback that may be in its text."""
+    lines = [line.strip() for line in str(error).splitlines()]
+    around = ("Traceback", "File ", "Location:", "^", "~")
+    good = [line for line in lines if line and not line.startswith(around)]
+    return good[-1] if good else "no reason is given"
 
 
 # Meshes ----------------------------------------------------------------------------------------
@@ -84,14 +95,15 @@ def import_mesh(path):
         ".gltf": (bpy.ops.import_scene.gltf, {"import_shading": "NORMALS"}),
         ".glb": (bpy.ops.import_scene.gltf, {"import_shading": "NORMALS"}),
     }
-    usd = {name: False for name in ("import_cameras", "import_lights", "import_materials")}
+    usd: dict = {name: False for name in ("import_cameras", "import_lights", "import_usd_preview")}
     usd |= {"apply_unit_conversion_scale": False, "set_frame_range": False}
+    usd |= {"import_textures_mode": "IMPORT_NONE"}
     operator, options = wanted.get(kind, (bpy.ops.wm.usd_import, usd))
     known = operator.get_rna_type().properties.keys()
     try:
         operator(filepath=path, **{k: v for k, v in options.items() if k in known})
     except RuntimeError as error:
-        raise Problem(f"the mesh {path} cannot be read: {str(error).strip()}") from error
+        raise Problem(f"the mesh {path} cannot be read: {last_word(error)}") from error
     made = [o for o in bpy.data.objects if o not in before]
     graph = bpy.context.evaluated_depsgraph_get()
     meshes = []
@@ -115,20 +127,43 @@ def positions(mesh):
     return flat.reshape(-1, 3).astype(float)
 
 
+def coordinates(mesh):
+    """(loops, 2) texture coordinates of a mesh; None where it has none."""
+    layer = next((u for u in mesh.uv_layers if u.active_render), mesh.uv_layers.active)
+    if layer is None:
+        return None
+    flat = np.empty(2 * len(mesh.loops), np.float32)
+    layer.data.foreach_get("uv", flat)
+    return flat.reshape(-1, 2).astype(float)
+
+
+def tiles(mesh):
+    """The tile that each polygon is on, by the middle of it; 0 for places that no tile has."""
+    counts = np.empty(len(mesh.polygons), np.int32)
+    mesh.polygons.foreach_get("loop_total", counts)
+    starts = np.concatenate([[0], np.cumsum(counts)[:-1]])
+    uv = coordinates(mesh)
+    middle = np.add.reduceat(uv, starts, axis=0) / counts[:, None]
+    least = np.minimum.reduceat(uv, starts, axis=0)
+    most = np.maximum.reduceat(uv, starts, axis=0)
+    inside = ((least >= -BESIDE) & (most <= 1 + BESIDE)).all(axis=1)
+    u, v = np.floor(np.nan_to_num(middle).clip(-1, 100)).astype(int).T
+    number = np.where((u >= 0) & (u <= 9) & (v >= 0) & (v < 100), 1001 + u + 10 * v, 0)
+    return np.where(inside, 1001, number)
+
+
 def textured(mesh):
     """Which polygons have an area in the texture."""
     usable = np.zeros(len(mesh.polygons), bool)
-    layer = next((u for u in mesh.uv_layers if u.active_render), mesh.uv_layers.active)
-    if layer is None:
+    uv = coordinates(mesh)
+    if uv is None:
         return usable
-    flat = np.empty(2 * len(mesh.loops), np.float32)
-    layer.data.foreach_get("uv", flat)
     mesh.calc_loop_triangles()
     triangles = np.empty(3 * len(mesh.loop_triangles), np.int32)
     mesh.loop_triangles.foreach_get("loops", triangles)
     owners = np.empty(len(mesh.loop_triangles), np.int32)
     mesh.loop_triangles.foreach_get("polygon_index", owners)
-    a, b, c = flat.reshape(-1, 2).astype(float)[triangles.reshape(-1, 3)].transpose(1, 0, 2)
+    a, b, c = uv[triangles.reshape(-1, 3)].transpose(1, 0, 2)
     u, v = b - a, c - a
     area = np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
     usable[owners[np.isfinite(area) & (area > 1e-14)]] = True
@@ -243,6 +278,7 @@ class Subject:
             raise Problem(
                 f"the mesh {name} has no texture coordinates (UVs); unwrap it before exporting it"
             )
+        self.notes = self._said(name)
         self._place(meshes, scale)
         self.turntable = bpy.data.objects.new("turntable", None)
         self.turntable.rotation_mode = "XYZ"
@@ -250,6 +286,43 @@ class Subject:
         smooth = name != "patch"
         self.objects = [self._object(mesh, smooth, picture) for mesh in self.skin]
         self.eye_objects = [self._object(mesh, smooth, picture) for mesh in self.eyes]
+
+    def _said(self, name):
+        """What people should know of the skin's materials and where it has texture coordinates."""
+        self.tiles: dict[int, int] = {}
+        materials, bare = set(), False
+        for mesh in self.skin:
+            for number, count in zip(*np.unique(tiles(mesh), return_counts=True), strict=True):
+                self.tiles[int(number)] = self.tiles.get(int(number), 0) + int(count)
+            used = np.empty(len(mesh.polygons), np.int32)
+            mesh.polygons.foreach_get("material_index", used)
+            for index in np.unique(used):
+                own = mesh.materials[index] if index < len(mesh.materials) else None
+                materials.add(own.name) if own else None
+                bare |= not own
+        if len(materials) + bare < 2:
+            return []
+        listed = ", ".join(sorted(materials)[:6]) + (" and more" if len(materials) > 6 else "")
+        return [
+            f"parts of the mesh {name} have materials of their own ({listed}), which are not "
+            "used: all that has texture coordinates shows this skin"
+        ]
+
+    def outside(self, there):
+        """What to say of polygons that are on none of the tiles that are there, None for one."""
+        known = {1001} if there is None else set(there)
+        lost = {n: count for n, count in self.tiles.items() if n not in known}
+        if not lost:
+            return []
+        share = 100 * sum(lost.values()) / sum(self.tiles.values())
+        named = ", ".join(str(n) if n else "none" for n in sorted(lost)[:6])
+        where = f"{share:.3g} % of the mesh has texture coordinates outside the texture"
+        if there is None:
+            return [
+                f"{where} (on tile {named}) and shows the colours of its edge; name all tiles of a "
+                f"set as NAME.{UDIM}.EXT"
+            ]
+        return [f"{where}: tile {named} is not there and shows as magenta"]
 
     def _check(self, name, meshes, scale):
         if sum(len(mesh.vertices) for mesh in meshes) > MOST_VERTICES:
@@ -355,20 +428,40 @@ class Textures:
     def get(self, path, space):
         key = (path, space)
         if key not in self.images:
+            numbers = tiles_of(path)
+            first = path.replace(UDIM, str(numbers[0])) if numbers else path
             try:
-                image = bpy.data.images.load(path)
+                image = bpy.data.images.load(first)
             except RuntimeError as error:
-                raise Problem(f"the texture {path} cannot be read: {str(error).strip()}") from error
+                raise Problem(f"the texture {path} cannot be read: {last_word(error)}") from error
             image.colorspace_settings.name = space
             image.alpha_mode = "CHANNEL_PACKED"
             if not all(image.size):
                 raise Problem(f"the texture {path} cannot be read")
+            if numbers:
+                image.source, image.filepath = "TILED", path
+                image.tiles[0].number = numbers[0]
+                for number in numbers[1:]:
+                    image.tiles.new(number)
             self.images[key] = image
         return self.images[key]
 
     def keep(self, paths):
         for key in [k for k in self.images if k[0] not in paths]:
             bpy.data.images.remove(self.images.pop(key))
+
+
+def tiles_of(path):
+    """Numbers of the tiles of a texture's name that holds <UDIM>; none of another."""
+    folder, name = os.path.split(path)
+    head, token, tail = name.partition(UDIM)
+    if not token:
+        return []
+    form = re.compile(f"{re.escape(head)}(1[0-9]{{3}}){re.escape(tail)}")
+    found = sorted(int(m[1]) for m in map(form.fullmatch, os.listdir(folder)) if m)
+    if not found:
+        raise Problem(f"the texture {path} has no tiles")
+    return found
 
 
 def new_material(name):
@@ -741,6 +834,7 @@ class Studio:
         self.subject: Subject | None = None
         self.room: Room | None = None
         self.key = self.device = None
+        self.told: set[str] = set()
 
     def arrange(self, picture):
         """Sets everything up for a picture; returns the material of its skin."""
@@ -751,6 +845,13 @@ class Studio:
             self.device = picture["device"]
             tell(event="device", name=choose_device(self.device))
         subject = self.look_at(picture)
+        colour = picture["base_colour"]
+        if isinstance(colour, str):
+            there = tiles_of(colour) or None
+            subject.notes += [note for note in subject.outside(there) if note not in subject.notes]
+        for note in [note for note in subject.notes if note not in self.told]:
+            self.told.add(note)
+            tell(event="note", message=note)
         material = skin_material(picture, self.textures)
         for thing in subject.objects:
             thing.data.materials[0] = material
