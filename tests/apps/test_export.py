@@ -98,7 +98,7 @@ def test_onnx_is_written(half, cutis, tmp_path):
     ("name", "flags", "what"),
     [
         ("a.cube", (), "nothing to export"),
-        ("a.cube", ("--preset", "tan"), "unknown preset"),
+        ("a.cube", ("--preset", "tann"), "unknown preset"),
         ("a.cube", ("--melanin", "lots"), "--melanin takes"),
         ("a.cube", ("--preset", "tanning", "--colorspace", "Lab"), "unknown colour space"),
         ("a.cube", ("--preset", "tanning", "--size", "1"), "2 to 129"),
