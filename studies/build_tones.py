@@ -26,6 +26,7 @@ HEADER = f"""\
 # Measured skin over the ITA of the person's face, degrees: linear sRGB under D65 without surface
 # (red, green, blue); covariances of log RGB between persons (b_..) and within a face (w_..); the
 # standard deviation of ITA within a face (spread, degrees); persons that count (persons).
+# Units: ita and spread in degrees, colours and covariances without.
 # Local lines, Gaussian of 8 degrees; beyond {ENDS[0]:g} and {ENDS[1]:g} the last line goes on.
 # Source: ISSA, half A, key issa2025, CC BY 4.0. Made by python -m studies.build_tones.
 """

@@ -1,7 +1,8 @@
 """Writes the table of docs/checks.md: faults made on purpose on three faces, and what is found.
 
-Each fault has three strengths. Whoever looks at the pictures sees it from the strength that is
-marked on, on a light face; that mark was set by eye, before the thresholds were.
+Each fault has three strengths. The mark says from which of them on somebody is taken to see it; it
+is a judgement, no experiment. Thresholds were set on these same faces: the table is a fit and no
+proof on others.
 """
 
 import tempfile

@@ -152,7 +152,7 @@ def test_flags_of_estimate(arguments, message, write_face, cutis, one_line, tmp_
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["--preset", "sunburn"], "unknown preset 'sunburn'; known are blood-eighth"),
+        (["--preset", "sunbern"], "unknown preset 'sunbern'"),
         (["--melanin", "2"], "melanin = 2 is outside its range 0.001 to 1"),
         (["--thickness", "5"], "thickness = 5 is outside its range 10 to 250 µm"),
         (["--melanin", "dark"], "--melanin takes a value"),

@@ -42,7 +42,7 @@ FARTHEST = 3.0
 """ΔE00 of a colour to the nearest that a model can explain, beyond which it is no skin."""
 MONK = ("f6ede4", "f3e7db", "f7ead0", "eadaba", "d7bd96", "a07e56", "825c43", "604134", "3a312a",
         "292420")  # fmt: skip
-"""Swatches of the Monk Skin Tone scale, encoded sRGB [monk2023]."""
+"""Swatches of the Monk Skin Tone scale, encoded sRGB [monk2023scale]."""
 Channel = Annotated[float, Field(gt=0, le=2)]
 Log = Annotated[float, Field(ge=-4, le=4)]
 
