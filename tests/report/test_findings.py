@@ -169,6 +169,16 @@ def test_the_next_step_follows_from_what_is_wrong():
     assert commands == ["cutis estimate a.png --mask MASK --colorspace sRGB --again"]
 
 
+def test_the_next_step_repeats_mask_and_folder():
+    off = changed(colour={"out_of_gamut": 0.3})
+    step = next(findings.next_steps(off, "a.png", "o/a.skin.exr", "my mask.png", "o"))[1]
+    assert step == "cutis estimate a.png --mask 'my mask.png' -o o --white auto --again"
+    none = [
+        c for _, c in findings.next_steps(changed(colour=None), "a.png", "m", "b.png", "o") if c
+    ]
+    assert none == ["cutis estimate a.png --mask MASK -o o --colorspace sRGB --again"]
+
+
 def test_steps_are_commands_that_exist(cutis):
     """Every command and flag of every step is one of the command line."""
     reports = [changed(), changed(colour=None), changed(colour={"out_of_gamut": 0.3}),

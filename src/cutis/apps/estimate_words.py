@@ -40,7 +40,8 @@ def say(
             out.say(f"{stem}.skin.exr was there already, made the same way; --again makes it anew")
         else:
             out.say(f"wrote {stem}.skin.exr and what belongs to it")
-        say_one(found[0].report, found[0].face, Path(f"{stem}.skin.exr"))
+        mask = sets[0].captures[0].mask
+        say_one(found[0].report, found[0].face, Path(f"{stem}.skin.exr"), mask, sets[0].output)
 
 
 def _say_many(sets: "Sequence[EstimateJob]", found: "Sequence[Estimated]") -> None:
@@ -56,10 +57,13 @@ def _say_many(sets: "Sequence[EstimateJob]", found: "Sequence[Estimated]") -> No
     out.say(f"{len(new)} of {total} estimated into {sets[0].output}{left}")
 
 
-def say_one(report: "Report", face: Path, maps: Path) -> None:
-    """Prints what was found in one capture; `face` and `maps` are its files."""
+def say_one(
+    report: "Report", face: Path, maps: Path, mask: Path | None = None, output: Path | None = None
+) -> None:
+    """Prints what was found in one capture: its files, and where its results went if known."""
     for line in summary.before(report):
         out.say(line)
     print_statistics(summary.rows(report))
-    for line in summary.after(report, str(face), str(maps)):
+    more = (None if path is None else str(path) for path in (mask, output))
+    for line in summary.after(report, str(face), str(maps), *more):
         out.say(line)

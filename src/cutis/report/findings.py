@@ -163,31 +163,36 @@ def fixed(report: Report, name: str) -> tuple[str, str]:
     return found or (("doubt", "the input is doubtful") if doubted else FIXED[name])
 
 
-def next_steps(report: Report, face: str, maps: str) -> Iterator[tuple[str, str]]:
+def next_steps(
+    report: Report, face: str, maps: str, mask: str | None = None, output: str | None = None
+) -> Iterator[tuple[str, str]]:
     """(what to do, the command for it or nothing), most pressing first.
 
-    `face` and `maps` are the files of the capture and of its maps. What is wrong with the input
-    comes before what can be done with the result.
+    `face`, `maps` and `mask` are the files of the capture, `output` its folder, where known. What
+    is wrong with the input comes before what can be done with the result.
     """
     colour, searched = report.colour, report.calibration.origin == "auto"
-    face, maps = quote(face), quote(maps)
+    maps = quote(maps)
+    to = "" if output is None else f" -o {quote(output)}"
+    same = quote(face) + ("" if mask is None else f" --mask {quote(mask)}") + to
+    other = f"{quote(face)} --mask MASK{to}"
     if colour is None:
         yield "Look whether the mask covers skin and the colour space is the right one.", ""
         yield (
             "Then estimate again, with both of them said.",
-            f"cutis estimate {face} --mask MASK --colorspace sRGB --again",
+            f"cutis estimate {other} --colorspace sRGB --again",
         )
         return
     if colour.out_of_gamut > MANY and not searched:
         yield (
             "Let the gains be searched for: exposure or white balance are probably off.",
-            f"cutis estimate {face} --white auto --again",
+            f"cutis estimate {same} --white auto --again",
         )
     elif colour.out_of_gamut > MANY:
         yield (
             "Take hair, lips, make-up and shading out of the mask: they are bright in the picture "
             "of ΔE00.",
-            f"cutis estimate {face} --mask MASK --white auto --again",
+            f"cutis estimate {other} --white auto --again",
         )
     if report.above_1 + report.below_0 > MANY * report.masked_texels:
         yield "Look for highlights and clipped texels: an albedo has none.", ""
@@ -195,7 +200,7 @@ def next_steps(report: Report, face: str, maps: str) -> Iterator[tuple[str, str]
         yield (
             "If brightness or white balance of the capture are not known to be right, let gains be "
             "searched for.",
-            f"cutis estimate {face} --white auto --again",
+            f"cutis estimate {same} --white auto --again",
         )
     yield (
         "Change the skin; what no edit touches stays as it is, bit for bit.",

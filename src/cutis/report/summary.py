@@ -25,10 +25,12 @@ def before(report: Report) -> Iterator[str]:
     yield f"gains {gains} ({known.origin}), model {report.model}{light}"
 
 
-def after(report: Report, face: str, maps: str) -> Iterator[str]:
+def after(
+    report: Report, face: str, maps: str, mask: str | None = None, output: str | None = None
+) -> Iterator[str]:
     """Lines below the table: the colour, what the maps are worth, and what to do next.
 
-    `face` and `maps` are the files of the capture and of its maps.
+    `face`, `maps` and `mask` are the files of the capture, `output` its folder, where known.
     """
     for count, what in ((report.below_0, "negative"), (report.above_1, "above one")):
         if count:
@@ -52,7 +54,7 @@ def after(report: Report, face: str, maps: str) -> Iterator[str]:
             )
         if report.skin_share < FEW_SKIN:
             yield "That is a small part of the mask: darker texels are not in these numbers."
-    what, command = next(next_steps(report, face, maps))
+    what, command = next(next_steps(report, face, maps, mask, output))
     yield f"Next: {what}"
     if command:
         yield f"    {command}"
