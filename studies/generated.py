@@ -47,6 +47,7 @@ MAKERS = {
         "src/cutis/data/weights/measured2026-trust.npz",
         "src/cutis/data/weights/aliaga2022-exact.npz",
     ],
+    "studies.look_schema": ["docs/look.schema.json"],
     "studies.build_tones": [
         "src/cutis/data/tones/*.csv", "docs/tones.md#path", "docs/tones.md#halves",
     ],

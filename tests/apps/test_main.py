@@ -16,8 +16,8 @@ COMMANDS = sorted(command.name for command in app.registered_commands)
 
 def test_the_commands():
     assert COMMANDS == [
-        "bench", "demo", "edit", "estimate", "export", "fit", "info", "render",
-        "simulate", "spectrum", "train",
+        "bench", "check", "demo", "edit", "estimate", "export", "fit", "info", "render",
+        "simulate", "spectrum", "studio", "train",
     ]  # fmt: skip
 
 

@@ -31,7 +31,9 @@ def test_there_and_back_within_sigma(tissue):
     truth = skins[:, [5, 7]]
     inside = np.abs(found.values[:, 5:] - truth) < 1.645 * found.sigma[:, 5:]
     assert np.all(inside.mean(axis=0) > 0.82)
-    assert np.all(np.median(found.sigma[:, 5:], axis=0) < [0.003, 0.01])
+    # scattering that follows melanin type leaves bilirubin less sharp
+    known = [0.005 if tissue.dermis_by_type else 0.003, 0.01]
+    assert np.all(np.median(found.sigma[:, 5:], axis=0) < known)
     assert found.covariance.shape == (150, 7, 7)
 
 
