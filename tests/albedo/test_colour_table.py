@@ -23,8 +23,8 @@ from cutis.colour import delta_e
 from cutis.optics import ALIAGA2022, PARAMETERS, TISSUES
 
 # Largest error in linear RGB, ΔE00 at the 99th percentile and at most. What scatters by melanin
-# type needs a finer table; with the same nodes 6.7e-4, 8.2e-4 at the ends, 0.026 (0.036 on a face) and
-# 0.058 were measured.
+# type needs a finer table; with the same nodes 6.7e-4, 8.2e-4 at the ends, 0.026 (0.036 on a face)
+# and 0.058 were measured.
 USUAL, SCATTERING = (3e-4, 0.01, 0.04), (1e-3, 0.04, 0.08)
 
 
