@@ -32,7 +32,7 @@ def few(shared_data):
 
 @pytest.fixture(scope="module")
 def found(tools, few):
-    return tools[2].study(few, per_band=20, models=("measured2026", "aliaga2022-exact"))
+    return tools[2].study(few, per_band=20, models=("measured2026b", "aliaga2022-exact"))
 
 
 def unseen(skins, rows):
@@ -67,14 +67,14 @@ def test_page_has_a_place_for_every_table_and_plot(tools, found, tmp_path):
 def test_what_knows_skin_is_nearer_to_it(found):
     of = found.issa
     median = {name: np.median(found.rmse(spectra)[of]) for name, spectra in found.implied.items()}
-    learned = median["cutis `measured2026`, subjects left out"]
+    learned = median["cutis `measured2026b`, subjects left out"]
     assert learned < 0.6 * median["cutis `aliaga2022-exact`, as shipped"]
     assert learned < 0.3 * median["Jakob & Hanika 2019"] < 0.3 * median["Mallett & Yuksel 2019"]
-    fits = [found.rmse(found.fits[name])[of].mean() for name in ("measured2026", "aliaga2022")]
+    fits = [found.rmse(found.fits[name])[of].mean() for name in ("measured2026b", "aliaga2022")]
     assert fits[0] < 0.6 * fits[1]
     assert 0.8 < found.inside(found.held["subject"])[of].mean() < 0.97
     assert 0.8 < found.inside(found.held["shipped"])[of].mean() < 0.97
-    light = found.relit(found.implied["cutis `measured2026`, subjects left out"], "A")
+    light = found.relit(found.implied["cutis `measured2026b`, subjects left out"], "A")
     assert np.median(light) < 1
 
 
