@@ -55,7 +55,7 @@ def main() -> None:
                 axes.imshow(picture[crop], cmap="magma", vmin=0, vmax=1)
             axes.set_xticks([])
             axes.set_yticks([])
-            if row is panels[0]:
+            if skin == FACES[0][1]:
                 axes.set_title(title.replace("`", ""), fontsize=9)
         row[0].set_ylabel(skin)
     target = DOCS / "images" / "steady.jpg"

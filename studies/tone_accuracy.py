@@ -13,7 +13,8 @@ from PIL import Image
 from scipy.ndimage import gaussian_filter
 
 from cutis.colour import delta_e, encode_srgb, ita, lab
-from cutis.looks.tone import AREAS, LENGTH, MONK, nearest_tone, swatch
+from cutis.colour.swatches import MONK, swatch
+from cutis.looks.tone import AREAS, LENGTH, nearest_tone
 from cutis.looks.tone_path import tone_path
 from cutis.maps import DEFAULT, estimate
 from studies.generated import ROOT, record

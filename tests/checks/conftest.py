@@ -7,6 +7,7 @@ import pytest
 
 from cutis.checks import examine, gather
 from cutis.colour import SRGB
+from cutis.maps import FileCapture
 from cutis.textures import MaskFile, Texture, TextureFile, read_mask, read_texture, write_texture
 
 HEADS = {
@@ -45,11 +46,11 @@ def look(tmp_path):
     def at(path, mask=None, limits=None):
         with TextureFile(path) as texture:
             if mask is None:
-                return examine(gather(texture), limits=limits)
+                return examine(gather(FileCapture(texture)), limits=limits)
             grey = np.uint8(np.rint(255 * np.repeat(mask[..., None], 3, axis=-1)))
             write_texture(Texture(grey, ("R", "G", "B"), SRGB), tmp_path / "mask.png")
             with MaskFile(tmp_path / "mask.png", texture.frame) as opened:
-                return examine(gather(texture, opened), limits=limits)
+                return examine(gather(FileCapture(texture, opened)), limits=limits)
 
     found.at = at
     return found

@@ -12,7 +12,8 @@ def gathered(pixels, mask, heights):
     whole, first = Texture(pixels, ("R", "G", "B"), SRGB), 0
     for height in heights:
         rows = slice(first, first + height)
-        found.add(first, whole.rows(rows), mask[rows])
+        part = whole.rows(rows)
+        found.add(first, part, part.linear(), mask[rows])
         first += height
     return found.finish()
 

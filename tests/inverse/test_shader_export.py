@@ -1,6 +1,5 @@
 """The decoder as GLSL: run by a headless browser's WebGL, compiled as C++, and read by NumPy."""
 
-import html
 import json
 import re
 import shutil
@@ -14,28 +13,11 @@ from cutis.inverse.shader_export import decoder_glsl
 from cutis.inverse.shipped import networks
 from cutis.maps import load_model
 from cutis.optics import to_coordinates
+from tests.inverse.webgl import needs_browser, said_by
 
-BROWSER = next(
-    (b for b in ("chromium", "chromium-browser", "google-chrome") if shutil.which(b)), ""
-)
 COMPILER = next((c for c in ("g++", "clang++", "c++") if shutil.which(c)), "")
 
-PAGE = """<!doctype html><pre id="out">nothing</pre><script>
-const out = document.getElementById("out");
-try {
-const skins = %(skins)s, n = skins.length / 5;
-const gl = document.createElement("canvas").getContext("webgl2");
-if (!gl || !gl.getExtension("EXT_color_buffer_float")) throw "no WebGL 2 with float targets";
-const make = (type, text) => {
-  const s = gl.createShader(type); gl.shaderSource(s, text); gl.compileShader(s);
-  if (!gl.getShaderParameter(s, gl.COMPILE_STATUS)) throw "compile: " + gl.getShaderInfoLog(s);
-  return s;
-};
-const program = gl.createProgram();
-gl.attachShader(program, make(gl.VERTEX_SHADER, `#version 300 es
-void main() {
-  gl_Position = vec4(gl_VertexID == 1 ? 3. : -1., gl_VertexID == 2 ? 3. : -1., 0., 1.);
-}`));
+PAGE = """const skins = %(skins)s, n = skins.length / 5;
 gl.attachShader(program, make(gl.FRAGMENT_SHADER, `#version 300 es
 precision highp float; precision highp int; precision highp sampler2D;
 uniform sampler2D skins; out vec4 colour;
@@ -66,8 +48,7 @@ const found = new Float32Array(4 * n);
 gl.readPixels(0, 0, n, 1, gl.RGBA, gl.FLOAT, found);
 if (gl.getError()) throw "GL error";
 out.textContent = JSON.stringify(Array.from(found));
-} catch (problem) { out.textContent = "failed: " + problem; }
-</script>"""
+"""
 
 SHIM = """
 #include <algorithm>
@@ -116,22 +97,11 @@ def wanted(skins):
     return load_model("aliaga2022").decode(skins)
 
 
-@pytest.mark.skipif(not BROWSER, reason="no headless browser here to run GLSL in")
+@needs_browser
 def test_a_browser_gives_the_same(glsl, skins, wanted, tmp_path):
-    page = tmp_path / "page.html"
     values = [float(v) for v in skins.ravel()]
-    page.write_text(PAGE % {"skins": json.dumps(values), "glsl": json.dumps(glsl)}, "utf-8")
-    flags = ["--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--disable-dev-shm-usage"]
-    flags += ["--enable-unsafe-swiftshader", f"--user-data-dir={tmp_path / 'profile'}"]
-    done = subprocess.run(
-        [BROWSER, *flags, "--virtual-time-budget=20000", "--dump-dom", page.as_uri()],
-        capture_output=True,
-        text=True,
-        timeout=120,
-    )
-    said = html.unescape(re.search(r'<pre id="out">(.*?)</pre>', done.stdout, re.S)[1])
-    if said.startswith("failed: no WebGL"):
-        pytest.skip("this browser has no WebGL 2 with float targets")
+    script = PAGE % {"skins": json.dumps(values), "glsl": json.dumps(glsl)}
+    said = said_by(script, tmp_path, seconds=20)
     assert said.startswith("["), said[:500]
     found = np.array(json.loads(said)).reshape(-1, 4)[:, :3]
     np.testing.assert_allclose(found, wanted, atol=1e-5)

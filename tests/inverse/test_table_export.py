@@ -1,10 +1,6 @@
 """The default decoder for other programs: ONNX Runtime, and GLSL in a headless browser."""
 
 import base64
-import html
-import re
-import shutil
-import subprocess
 
 import numpy as np
 import pytest
@@ -22,30 +18,13 @@ from cutis.inverse.table_export import (
 )
 from cutis.maps import load_model
 from cutis.optics import MEASURED2026, PARAMETERS
+from tests.inverse.webgl import needs_browser, said_by
 
-BROWSER = next(
-    (b for b in ("chromium", "chromium-browser", "google-chrome") if shutil.which(b)), ""
-)
 WIDTH, HEIGHT = 500, 400
-PAGE = """<!doctype html><pre id="out">nothing</pre><script>
-const out = document.getElementById("out");
-try {
-const bytes = text => Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer;
+PAGE = """const bytes = text => Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer;
 const skins = new Float32Array(bytes("%(skins)s"));
 const table = new Uint16Array(bytes("%(table)s"));
 const [M, E, T, B, O] = %(nodes)s, W = %(width)d, H = %(height)d;
-const gl = document.createElement("canvas").getContext("webgl2");
-if (!gl || !gl.getExtension("EXT_color_buffer_float")) throw "no WebGL 2 with float targets";
-const make = (type, text) => {
-  const s = gl.createShader(type); gl.shaderSource(s, text); gl.compileShader(s);
-  if (!gl.getShaderParameter(s, gl.COMPILE_STATUS)) throw "compile: " + gl.getShaderInfoLog(s);
-  return s;
-};
-const program = gl.createProgram();
-gl.attachShader(program, make(gl.VERTEX_SHADER, `#version 300 es
-void main() {
-  gl_Position = vec4(gl_VertexID == 1 ? 3. : -1., gl_VertexID == 2 ? 3. : -1., 0., 1.);
-}`));
 gl.attachShader(program, make(gl.FRAGMENT_SHADER, `#version 300 es
 precision highp float; precision highp int;
 uniform highp sampler2D skins; out vec4 colour;
@@ -97,8 +76,7 @@ const raw = new Uint8Array(found.buffer);
 for (let i = 0; i < raw.length; i += 8190)
   text += btoa(String.fromCharCode(...raw.subarray(i, i + 8190)));
 out.textContent = "found:" + text;
-} catch (problem) { out.textContent = "failed: " + problem; }
-</script>"""
+"""
 
 
 @pytest.fixture(scope="module")
@@ -150,28 +128,15 @@ def test_the_textures_filtered_linearly(table, skins, wanted):
     assert np.percentile(delta_e(found, wanted), 99) <= 0.05
 
 
-@pytest.mark.skipif(not BROWSER, reason="no headless browser here to run GLSL in")
+@needs_browser
 def test_a_browser_gives_the_same(table, skins, wanted, tmp_path):
     glsl = table_glsl("The decoder of measured2026, from cutis.", "decoder.table.f16")
-    page = tmp_path / "page.html"
-    page.write_text(
-        PAGE % {
-            "skins": base64.b64encode(skins.astype("<f4").tobytes()).decode(),
-            "table": base64.b64encode(table_bytes(table)).decode(),
-            "nodes": list(NODES), "width": WIDTH, "height": HEIGHT, "glsl": glsl,
-        }, "utf-8",
-    )  # fmt: skip
-    flags = ["--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--disable-dev-shm-usage"]
-    flags += ["--enable-unsafe-swiftshader", f"--user-data-dir={tmp_path / 'profile'}"]
-    done = subprocess.run(
-        [BROWSER, *flags, "--virtual-time-budget=60000", "--dump-dom", page.as_uri()],
-        capture_output=True,
-        text=True,
-        timeout=240,
-    )
-    said = html.unescape(re.search(r'<pre id="out">(.*?)</pre>', done.stdout, re.S)[1])
-    if said.startswith("failed: no WebGL"):
-        pytest.skip("this browser has no WebGL 2 with float targets")
+    script = PAGE % {
+        "skins": base64.b64encode(skins.astype("<f4").tobytes()).decode(),
+        "table": base64.b64encode(table_bytes(table)).decode(),
+        "nodes": list(NODES), "width": WIDTH, "height": HEIGHT, "glsl": glsl,
+    }  # fmt: skip
+    said = said_by(script, tmp_path, seconds=60)
     assert said.startswith("found:"), said[:500]
     found = np.frombuffer(base64.b64decode(said[6:]), "<f4").reshape(-1, 4)[:, :3]
     errors = delta_e(found, wanted)

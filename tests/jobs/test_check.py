@@ -5,12 +5,15 @@ from dataclasses import replace
 import numpy as np
 import OpenImageIO as oiio
 import pytest
+from PIL import Image
 
-from cutis.checks import Finding
+from cutis.checks import Finding, examine, gather
 from cutis.colour import LINEAR, SRGB, encode_srgb
 from cutis.jobs.check import Checked, CheckJob, code_of
+from cutis.jobs.estimate import EstimateJob
 from cutis.jobs.outcome import CaptureFiles
-from cutis.textures import Texture, read_mask, read_texture, write_texture
+from cutis.maps import FileCapture
+from cutis.textures import Texture, TextureFile, read_mask, read_texture, write_texture
 
 NOTE, FINDING = Finding("a", "note", "a note."), Finding("b", "finding", "a finding.")
 
@@ -123,3 +126,18 @@ def test_the_digest_is_that_of_contents(tmp_path, face):
     before = job.digest()
     written(path, 0.9 * face)
     assert job.digest() != before
+
+
+@pytest.mark.parametrize("steady", [False, True])
+def test_estimate_doubts_what_a_look_of_its_own_finds(steady, tmp_path):
+    """Estimating gathers while it reads, also where models see bands again and again."""
+    codes = np.random.default_rng(1).integers(0, 255, (70, 9000, 3), np.uint8)
+    Image.fromarray(codes).save(tmp_path / "noise.png")
+    files = CaptureFiles(tmp_path / "noise.png")
+    (done,) = EstimateJob((files,), tmp_path / "out", steady=steady).run()
+    with TextureFile(files.face) as texture:
+        assert len(list(texture.bands())) > 1
+        found = examine(gather(FileCapture(texture))).findings
+    wanted = [(one.kind, one.sentence) for one in found if one.level == "finding"]
+    assert wanted
+    assert [(one.kind, one.sentence) for one in done.report.doubts] == wanted

@@ -6,9 +6,10 @@ import pytest
 import cutis
 from cutis.colour import delta_e, encode_srgb, ita, lab
 from cutis.colour.spaces import LINEAR
+from cutis.colour.swatches import MONK, swatch
 from cutis.errors import CutisError
 from cutis.looks import Look, tone_look
-from cutis.looks.tone import MONK, nearest_tone, swatch
+from cutis.looks.tone import nearest_tone
 from cutis.looks.tone_fit import monge
 from cutis.looks.tone_path import tone_path
 from cutis.maps import Face, MapsFile, bound

@@ -10,10 +10,10 @@ from cutis.checks.finding import Finding
 from cutis.checks.gathering import Gathered, Gathering, Stored
 from cutis.checks.thresholds import Limits, Thresholds, shipped
 from cutis.checks.tone import Tone, tone
-from cutis.textures import MaskFile, TextureFile
 
 if TYPE_CHECKING:
     from cutis.inverse import Model
+    from cutis.maps import FileCapture
 
 Check = Callable[[Evidence, Limits], Iterator[Finding]]
 
@@ -50,20 +50,24 @@ class Examined:
     tone: Tone | None = None
 
 
-def gather(texture: TextureFile, mask: MaskFile | None = None) -> Gathered:
-    """One pass over an open texture, and its mask; without one, alpha says where skin is."""
-    from cutis.maps.source import FileCapture
-
+def watch(capture: "FileCapture") -> Gathering:
+    """Gathers from now on what is read of a capture; `finish` it when all bands have been."""
+    texture = capture.texture
     first = texture.rows(slice(0, 0))
     stored = Stored(
         first.pixels.dtype.name, texture.space, texture.origin, texture.turned,
         orientation.tag_of(texture),
     )  # fmt: skip
-    found = Gathering(texture.shape, stored, mask is not None)
-    capture = FileCapture(texture, mask)
-    for rows in texture.bands():
-        part = texture.rows(rows)
-        found.add(rows.start, part, capture.cover(part, rows))
+    found = Gathering(texture.shape, stored, capture.mask is not None)
+    capture.watched = found.add
+    return found
+
+
+def gather(capture: "FileCapture") -> Gathered:
+    """One pass over an open capture."""
+    found = watch(capture)
+    for rows in capture.bands():
+        capture.rows(rows)
     return found.finish()
 
 

@@ -99,11 +99,10 @@ class Gathering:
         self._left: list[tuple[Map, Map]] = []
         self._right: list[tuple[Map, Map]] = []
 
-    def add(self, first: int, part: Texture, cover: Map) -> None:
-        """The next rows, the first of which is `first`, and their cover (h, W)."""
+    def add(self, first: int, part: Texture, linear: Map, cover: Map) -> None:
+        """The next rows, the first of which is `first`, their colours and cover (h, W)."""
         columns, _ = colour_channels(part.channels)
         stored = part.pixels[..., columns]
-        linear = part.linear()
         inside = cover > INSIDE
         self._tally(stored, linear, inside)
         self._reduce(first, linear, cover)

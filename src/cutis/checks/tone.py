@@ -6,13 +6,7 @@ import numpy as np
 
 from cutis.checks.evidence import Evidence
 from cutis.colour import ita, lab
-from cutis.colour.transfer import decode_srgb
-
-MONK = (
-    "f6ede4", "f3e7db", "f7ead0", "eadaba", "d7bd96", "a07e56", "825c43", "604134", "3a312a",
-    "292420",
-)  # fmt: skip
-"""The ten tones, light to dark, as sRGB [monk2023scale]: display colours, not measured skin."""
+from cutis.colour.swatches import MONK, swatch
 
 
 @dataclass(frozen=True)
@@ -40,6 +34,5 @@ def tone(seen: Evidence) -> Tone | None:
 
 def nearest_monk(colour: np.ndarray) -> int:
     """The Monk tone nearest to a colour (3,) in CIELAB, by distance there."""
-    codes = np.array([[int(h[i : i + 2], 16) for i in (0, 2, 4)] for h in MONK]) / 255
-    scale = np.asarray(lab(np.asarray(decode_srgb(codes), np.float32)))
+    scale = np.asarray(lab(np.stack([swatch(one) for one in MONK]).astype(np.float32)))
     return int(np.linalg.norm(scale - colour, axis=1).argmin()) + 1

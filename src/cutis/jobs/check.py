@@ -18,7 +18,7 @@ from cutis.jobs.files import check_outputs
 from cutis.jobs.job import digest_of, part
 from cutis.jobs.outcome import CaptureFiles
 from cutis.jobs.runners import in_one_line
-from cutis.maps import load_model
+from cutis.maps import FileCapture, load_model
 from cutis.maps.estimating import Progress, nobody
 from cutis.textures import MaskFile, Orientation, TextureFile
 from cutis.textures.mask import WrongSize
@@ -90,7 +90,7 @@ class CheckJob:
                     )
                 except WrongSize as error:
                     more.append(_wrong_size(error))
-            seen = gathered[capture.face] = gather(texture, mask)
+            seen = gathered[capture.face] = gather(FileCapture(texture, mask))
             if not seen.tallies.inside and mask is not None:
                 raise mask.empty()
         judged = examine(seen, self.model, self.limits)

@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import Any, Literal
 
 from cutis.arrays import Map
-from cutis.checks import examine, gather
+from cutis.checks import examine, watch
+from cutis.checks.gathering import Gathered
 from cutis.colour import LINEAR, Light, Space, light
 from cutis.errors import CutisError
 from cutis.inverse import Model
@@ -189,7 +190,7 @@ class EstimateJob:
         stem = self.stem(capture)
         with contextlib.ExitStack() as stack:
             opened = stack.enter_context(self._opened(capture))
-            doubts = self._doubts(opened)
+            looked_at = watch(opened)
             run = _Run(self, known, opened, stem, stack)
             regions = None
             if capture.regions is not None:
@@ -206,7 +207,7 @@ class EstimateJob:
             colorspace=f"{texture.space.name} ({texture.origin})",
             regions=numbers,
             notes=(*notes, *([] if regions is None else regions.notes)),
-            doubts=doubts,
+            doubts=self._doubts(looked_at.finish()),
         )
         total = opened.shape[0] * opened.shape[1]
         progress(total, total, "drawing previews")
@@ -221,11 +222,10 @@ class EstimateJob:
             path.write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
         return Estimated(capture.face, report, pictures=pictures)
 
-    def _doubts(self, opened: FileCapture) -> tuple[Doubt, ...]:
+    def _doubts(self, gathered: Gathered) -> tuple[Doubt, ...]:
         """Why the capture may be no albedo of skin; what was asked to be searched for is none."""
         searched = {"cast", "exposure"} if self.white == "auto" else set[str]()
         searched |= {"exposure"} if self.exposure == "auto" else set()
-        gathered = gather(opened.texture, opened.mask)
         return tuple(
             Doubt(one.kind, one.sentence, one.hint)
             for one in examine(gathered).findings

@@ -12,7 +12,8 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from cutis.colour import decode_srgb, delta_e, ita
+from cutis.colour import delta_e, ita
+from cutis.colour.swatches import MONK, swatch
 from cutis.errors import CutisError
 from cutis.inverse.calibration import Calibration
 from cutis.looks import tone_fit
@@ -40,9 +41,6 @@ MEASURED = (-62.0, 56.0)
 """ITA° between which all but one of 200 measured faces lie."""
 FARTHEST = 3.0
 """ΔE00 of a colour to the nearest that a model can explain, beyond which it is no skin."""
-MONK = ("f6ede4", "f3e7db", "f7ead0", "eadaba", "d7bd96", "a07e56", "825c43", "604134", "3a312a",
-        "292420")  # fmt: skip
-"""Swatches of the Monk Skin Tone scale, encoded sRGB [monk2023scale]."""
 Channel = Annotated[float, Field(gt=0, le=2)]
 Log = Annotated[float, Field(ge=-4, le=4)]
 
@@ -277,11 +275,6 @@ def tone_of(text: str) -> Tone:
         f"{shorten(text)}: is no tone; use ita:-65 to ita:60, monk:1 to monk:10, a colour as "
         "#8d5524, or like:OTHER.skin.exr"
     )
-
-
-def swatch(text: str) -> Any:
-    """`8d5524` → (3,) linear sRGB."""
-    return decode_srgb(np.array([int(text[i : i + 2], 16) / 255 for i in (0, 2, 4)]))
 
 
 def nearest_tone(path: TonePath, rgb: Any) -> float:

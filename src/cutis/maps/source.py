@@ -1,7 +1,7 @@
 """Captures: what maps are estimated of and written back into, in memory or in files."""
 
 import hashlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Protocol
@@ -56,11 +56,13 @@ class ArrayCapture:
 class FileCapture:
     """A capture in an open file, with its open mask; without a mask, alpha says where skin is.
 
-    `seen` becomes true where skin was met in the rows that were read.
+    `seen` becomes true where skin was met in the rows that were read. `watched` is shown all that
+    is read: the first row, the rows as they are stored, their colours and cover.
     """
 
     def __init__(self, texture: TextureFile, mask: MaskFile | None = None) -> None:
         self.texture, self.mask, self.seen = texture, mask, False
+        self.watched: Callable[[int, Texture, Map, Map], None] | None = None
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -79,14 +81,13 @@ class FileCapture:
     def rows(self, rows: slice) -> tuple[Map, Map]:
         """Colours and cover of some rows."""
         part = self.texture.rows(rows)
-        return part.linear(), self.cover(part, rows)
-
-    def cover(self, part: Texture, rows: slice) -> Map:
-        """Cover (h, W) of some rows that were read."""
         least = 0.0 if self.mask is None else MaskFile.BLACK
         cover = cover_of_alpha(part) if self.mask is None else self.mask.rows(rows)
         self.seen = self.seen or bool((cover > least).any())
-        return cover
+        colours = part.linear()
+        if self.watched is not None:
+            self.watched(rows.start, part, colours, cover)
+        return colours, cover
 
     def empty(self) -> CutisError:
         """What to raise when no skin was met."""
